@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+#include "experiments/cli/command.h"
+#include "experiments/cli/table.h"
+#include "experiments/execute.h"
+#include "experiments/metrics/metric.h"
+#include "experiments/provenance.h"
+
+namespace textonbench::cli {
+namespace {
+
+struct Options {
+  ModelOptions model;
+  int samples = 8;
+  std::vector<std::string> metrics;
+  bool json = false;
+};
+
+RunSpec make_spec(const Options& options, const ExemplarInfo& exemplar) {
+  const MethodEntry& method = find_method(options.model.method);
+  RunSpec spec;
+  spec.method = options.model.method;
+  spec.params = options.model.read_params(method).values();
+  spec.exemplar = options.model.exemplar;
+  spec.exemplar_sha256 = exemplar_sha256(exemplar);
+  spec.size = options.model.read_size();
+  spec.periodic = options.model.is_periodic();
+  spec.seed = options.model.seed;
+  spec.samples = options.samples;
+  spec.metrics = options.metrics;
+  if (spec.metrics.empty()) {
+    for (const MetricEntry& metric : metric_catalog()) spec.metrics.emplace_back(metric.name);
+  }
+  for (const std::string& name : spec.metrics) find_metric(name);
+  std::sort(spec.metrics.begin(), spec.metrics.end());
+  return spec;
+}
+
+std::string number(const Record& value) {
+  return value.is_null() ? std::string() : fmt::format("{:.4g}", value.get<double>());
+}
+
+void print_metrics(const Record& metrics) {
+  std::vector<std::vector<std::string>> rows;
+  for (const MetricEntry& entry : metric_catalog()) {
+    const auto metric = metrics.find(entry.name);
+    if (metric == metrics.end()) continue;
+    const Record& deviation = (*metric)["stderr"];
+    rows.push_back({std::string(entry.name), number((*metric)["value"]), deviation.is_null() ? "" : "±",
+                    number(deviation), number((*metric)["floor"]), std::string(entry.unit)});
+  }
+  print_table({{"METRIC"}, {"VALUE", Align::right}, {""}, {"STDERR", Align::right}, {"FLOOR", Align::right}, {"UNIT"}},
+              rows);
+}
+
+int measure(const Options& options, const GlobalOptions& globals) {
+  const tbb::global_control threads = limit_threads(globals);
+  const ExemplarCatalog catalog(home_folder());
+  const ExemplarInfo exemplar = find_exemplar(catalog, options.model.exemplar);
+  const RunSpec spec = make_spec(options, exemplar);
+  const Record record = execute(spec, exemplar, nullptr);
+  if (record["status"] == "refused") {
+    throw std::invalid_argument(fmt::format("{} cannot do this: {}", spec.method, record["reason"].get<std::string>()));
+  }
+  if (options.json) {
+    print_json({{"method", spec.method},
+                {"exemplar", spec.exemplar},
+                {"params", record["spec"]["params"]},
+                {"metrics", record["metrics"]},
+                {"id", record["id"]},
+                {"spec", record["spec"]},
+                {"time", record["time"]}});
+    return 0;
+  }
+  print_metrics(record["metrics"]);
+  if (!globals.quiet) {
+    fmt::print(stderr,
+               "\n{} samples, {:.1f} s. ± is the standard error over the samples; the floor is what samples of the "
+               "exact Gaussian law score.\n",
+               spec.samples, record["time"]["wall_seconds"].get<double>());
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command measure_command(CLI::App& app, const GlobalOptions& globals) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("measure", "Measure how good and how fast one model is");
+  options->model.add_to(*command);
+  command->add_option("--samples", options->samples, "Samples to draw")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--metrics", options->metrics, "Comma-separated metrics (all)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_flag("--json", options->json, "Print one JSON document");
+  set_examples(*command, "  textonbench measure adsn mamurk_a_1 --samples 16 --metrics mean_error,skewness");
+  return {command, [options, &globals] { return measure(*options, globals); }};
+}
+
+}  // namespace textonbench::cli

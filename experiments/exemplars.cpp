@@ -1,0 +1,212 @@
+#include "experiments/exemplars.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "experiments/exemplar_catalog_file.h"
+#include "experiments/procedural_exemplars.h"
+#include "experiments/provenance.h"
+#include "methods/base/image_io.h"
+#include "methods/base/params.h"
+
+namespace textonbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* data_variable = "TEXTONBENCH_DATA";
+
+bool is_picture(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  for (const char* known : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr"}) {
+    if (extension == known) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Pictures of the user's folder by file name without extension, in alphabetical order.
+std::map<std::string, std::vector<fs::path>> read_data_folder() {
+  std::map<std::string, std::vector<fs::path>> files;
+  const char* value = std::getenv(data_variable);
+  if (value == nullptr || *value == '\0') {
+    return files;
+  }
+  try {
+    for (const auto& entry : fs::directory_iterator(value)) {
+      if (entry.is_regular_file() && is_picture(entry.path())) {
+        files[entry.path().stem().string()].push_back(entry.path());
+      }
+    }
+  } catch (const fs::filesystem_error& error) {
+    throw std::invalid_argument(
+        fmt::format("{}={}: expected a folder that can be read ({})", data_variable, value, error.code().message()));
+  }
+  for (auto& [stem, paths] : files) {
+    std::ranges::sort(paths);
+  }
+  return files;
+}
+
+/// Why the file is not the expected one; nothing when it is.
+std::optional<std::string> mismatch(const fs::path& file, const std::string& expected) {
+  const std::string found = expected.empty() ? expected : sha256_of_file(file);
+  if (found == expected) {
+    return std::nullopt;
+  }
+  return fmt::format("{} is another picture (SHA-256 {}, expected {})", file.string(), found, expected);
+}
+
+/// Decides whether the exemplar is here, and with which file: the installed one, or the user's own of that name.
+ExemplarInfo locate(CatalogRow row, const std::vector<fs::path>& own) {
+  ExemplarInfo& info = row.info;
+  if (std::error_code error; fs::is_regular_file(row.installed, error)) {
+    if (const auto wrong = mismatch(row.installed, info.expected_sha256)) {
+      info.how_to_get = fmt::format("{}; {}", *wrong, info.how_to_get);
+    } else {
+      info.file = row.installed;
+    }
+  }
+  for (const fs::path& candidate : own) {
+    if (const auto wrong = mismatch(candidate, info.expected_sha256)) {
+      info.file = candidate;
+      info.how_to_get = fmt::format("{}: rename or remove it; {}", *wrong, info.how_to_get);
+      return info;
+    }
+    if (info.file.empty()) {
+      info.file = candidate;
+    }
+  }
+  info.available = !info.file.empty();
+  return info;
+}
+
+ExemplarInfo procedural_info(const ProceduralExemplar& exemplar) {
+  return {.name = std::string(exemplar.name),
+          .available = true,
+          .file = {},
+          .source = fmt::format("procedural, seed {}: {}", exemplar.seed.value, exemplar.title),
+          .licence = "CC0-1.0",
+          .how_to_get = {},
+          .expected_sha256 = {},
+          .tags = {"default", "procedural", "micro"}};
+}
+
+ExemplarInfo own_info(const std::string& name, const std::vector<fs::path>& files) {
+  ExemplarInfo info{.name = name,
+                    .available = files.size() == 1,
+                    .file = files.front(),
+                    .source = data_variable,
+                    .licence = "not stated",
+                    .how_to_get = {},
+                    .expected_sha256 = {},
+                    .tags = {}};
+  if (!info.available) {
+    info.how_to_get =
+        fmt::format("{} and {} would have the same name: rename one", files[0].string(), files[1].filename().string());
+  }
+  return info;
+}
+
+const ProceduralExemplar& find_procedural(std::string_view name) {
+  const auto found = std::ranges::find(procedural_exemplars(), name, &ProceduralExemplar::name);
+  if (found == procedural_exemplars().end()) {
+    throw std::invalid_argument(fmt::format("exemplar \"{}\" has no file and is not procedural", name));
+  }
+  return *found;
+}
+
+void require_available(const ExemplarInfo& info) {
+  if (!info.available) {
+    throw std::invalid_argument(fmt::format("exemplar \"{}\" is not available here: {}", info.name, info.how_to_get));
+  }
+}
+
+}  // namespace
+
+ExemplarCatalog::ExemplarCatalog(const fs::path& home) {
+  auto data = read_data_folder();
+  for (CatalogRow& row : read_exemplar_catalog(home / "configs" / "exemplars.toml")) {
+    const std::string name = row.info.name;
+    all_.push_back(locate(std::move(row), data[name]));
+  }
+  for (const ProceduralExemplar& exemplar : procedural_exemplars()) {
+    ExemplarInfo info = procedural_info(exemplar);
+    if (const auto own = data.find(info.name); own != data.end()) {
+      info.available = false;
+      info.file = own->second.front();
+      info.how_to_get = fmt::format("{} has the name of a procedural exemplar: rename it", info.file.string());
+    }
+    all_.push_back(std::move(info));
+  }
+  for (const ExemplarInfo& known : all_) {
+    data.erase(known.name);
+  }
+  for (const auto& [name, files] : data) {
+    all_.push_back(own_info(name, files));
+  }
+}
+
+const ExemplarInfo& ExemplarCatalog::look_up(std::string_view name) const {
+  if (const auto found = std::ranges::find(all_, name, &ExemplarInfo::name); found != all_.end()) {
+    return *found;
+  }
+  std::vector<std::string_view> names;
+  for (const ExemplarInfo& info : all_) {
+    names.push_back(info.name);
+  }
+  throw std::invalid_argument(fmt::format("unknown exemplar \"{}\"{}; \"textonbench list exemplars\" shows all", name,
+                                          did_you_mean(name, names)));
+}
+
+const ExemplarInfo& ExemplarCatalog::find(std::string_view name) const {
+  const ExemplarInfo& info = look_up(name);
+  require_available(info);
+  return info;
+}
+
+std::vector<std::string> ExemplarCatalog::tagged(std::string_view tag) const {
+  std::vector<std::string> names;
+  for (const ExemplarInfo& info : all_) {
+    if (std::ranges::find(info.tags, tag) != info.tags.end()) {
+      names.push_back(info.name);
+    }
+  }
+  return names;
+}
+
+std::string exemplar_sha256(const ExemplarInfo& info) {
+  require_available(info);
+  if (info.file.empty()) {
+    return sha256(fmt::format("procedural exemplar {}, seed {}, code {}", info.name,
+                              find_procedural(info.name).seed.value, code_version()));
+  }
+  return sha256_of_file(info.file);
+}
+
+Exemplar load_exemplar(const ExemplarInfo& info, std::vector<std::string>* notes) {
+  require_available(info);
+  if (info.file.empty()) {
+    return {info.name, draw_procedural(info.name, find_procedural(info.name).seed), exemplar_sha256(info)};
+  }
+  if (const auto wrong = mismatch(info.file, info.expected_sha256)) {
+    throw std::invalid_argument(fmt::format("exemplar \"{}\": {}", info.name, *wrong));
+  }
+  ReadResult result = read_image(info.file);
+  if (notes != nullptr) {
+    notes->insert(notes->end(), result.notes.begin(), result.notes.end());
+  }
+  return {info.name, std::move(result.image), sha256_of_file(info.file)};
+}
+
+}  // namespace textonbench

@@ -1,0 +1,56 @@
+// Which exemplars there are and where a reader gets them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "methods/base/exemplar.h"
+
+namespace textonbench {
+
+/// What `textonbench list exemplars` tells of one.
+struct ExemplarInfo {
+  std::string name;
+  bool available = false;
+  /// Empty for a procedural exemplar and for one that was not found. Of one that is not available: a file in
+  /// TEXTONBENCH_DATA that has its name and is something else.
+  std::filesystem::path file;
+  std::string source;  ///< "Debian mypaint-data-extras", "procedural, seed 1", "TEXTONBENCH_DATA", …
+  std::string licence;
+  std::string how_to_get;         ///< for one that is not here
+  std::string expected_sha256;    ///< empty when any file of that name will do
+  std::vector<std::string> tags;  ///< "default", "micro", "structured", "procedural", "paper"
+};
+
+class ExemplarCatalog {
+ public:
+  /// Reads configs/exemplars.toml below `home` and the folder TEXTONBENCH_DATA. Throws std::invalid_argument with
+  /// file:line:column for a bad catalogue file, and naming the folder for a bad TEXTONBENCH_DATA.
+  ///
+  /// An exemplar with a known SHA-256 is available when a file with that SHA-256 lies in its package's folder or, as
+  /// NAME.png (jpg, jpeg, tif, tiff, exr), in TEXTONBENCH_DATA. A file of that name with other bytes never stands in
+  /// for it: how_to_get then says which file is wrong. Every other picture in TEXTONBENCH_DATA is an exemplar named by
+  /// its file name without extension.
+  explicit ExemplarCatalog(const std::filesystem::path& home);
+
+  const std::vector<ExemplarInfo>& all() const { return all_; }
+  /// Available or not. Throws std::invalid_argument for an unknown name, with the nearest one.
+  const ExemplarInfo& look_up(std::string_view name) const;
+  /// The same; throws also for one that is not here, with how to get it.
+  const ExemplarInfo& find(std::string_view name) const;
+  /// Names with that tag, available or not.
+  std::vector<std::string> tagged(std::string_view tag) const;
+
+ private:
+  std::vector<ExemplarInfo> all_;
+};
+
+/// SHA-256 of the file's bytes; of a procedural exemplar, of its name, seed and code version. Cheap: decodes nothing.
+std::string exemplar_sha256(const ExemplarInfo& info);
+
+/// Reads (or makes) the pixels. `notes` receives what image_io changed. Throws when the file is not the expected one.
+Exemplar load_exemplar(const ExemplarInfo& info, std::vector<std::string>* notes = nullptr);
+
+}  // namespace textonbench

@@ -1,0 +1,31 @@
+// Pictures that a run can keep for the figures.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "experiments/metrics/metric.h"
+
+namespace textonbench {
+
+/// What a picture is made from. `samples` are the run's samples in order.
+struct PictureSource {
+  const Target& target;
+  const Model& model;
+  const Domain& domain;
+  std::span<const Image> samples;
+};
+
+struct PictureEntry {
+  std::string_view name;  ///< "sample", "sample_2", "sample_3", "exemplar", "periodic_component", "smooth_component", …
+  std::string_view title;
+  Image (*make)(const PictureSource&);
+};
+
+/// sample, sample_2, sample_3 (the first three samples), exemplar, periodic_component, smooth_component (plus 1/2),
+/// exemplar_modulus, periodic_modulus, exemplar_phase, sample_modulus, sample_phase.
+std::span<const PictureEntry> picture_catalog();
+/// Throws std::invalid_argument naming the nearest known name.
+const PictureEntry& find_picture(std::string_view name);
+
+}  // namespace textonbench

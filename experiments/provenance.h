@@ -1,0 +1,26 @@
+// Where a number comes from: code, machine, libraries.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace textonbench {
+
+/// Keys: version, code_version, git_commit ("unknown" outside a checkout), git_dirty, compiler, flags, build_type, cpu,
+/// cores, threads, os, libraries {eigen, fftw, openimageio, tbb, …}, fft_plans.
+nlohmann::ordered_json provenance();
+
+/// 16 hexadecimal digits: SHA-256 of the sources below methods/ and of what experiments/ measures with, taken at build
+/// time.
+const char* code_version();
+
+/// Lower-case hexadecimal SHA-256.
+std::string sha256(std::string_view bytes);
+std::string sha256_of_file(const std::filesystem::path& file);
+
+/// The folder that holds configs/ and templates: TEXTONBENCH_HOME, else the nearest one upward from the program's own
+/// place (a build tree), else <prefix>/share/textonbench. Throws std::invalid_argument when there is none.
+std::filesystem::path home_folder();
+
+}  // namespace textonbench

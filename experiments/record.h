@@ -1,0 +1,54 @@
+// What a run leaves behind: one line of JSON. The only file format of results.
+//
+// A results folder holds records.jsonl (append-only, one record a line) and pictures/ (named by the SHA-256 of their
+// bytes). Writers append under a file lock with one write and fsync, so a crash, a full disk or a second process
+// cannot damage a record that is already there; a line cut short by a crash is told and skipped.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace textonbench {
+
+/// Keys: schema (1), id, status ("ok" | "failed" | "refused"), reason (unless ok), spec (see run_spec.h), command,
+/// exemplar {width, height, channels}, metrics {NAME: {value, stderr, unit, floor}} (stderr and floor null where they
+/// do not exist), pictures {NAME: {file, width, height}} (file relative to the results folder), time {wall_seconds,
+/// cpu_seconds, peak_bytes, finished (ISO 8601)}, provenance (see provenance.h).
+using Record = nlohmann::ordered_json;
+
+/// A line of records.jsonl that could not be used.
+struct BadLine {
+  std::size_t line;
+  std::string reason;
+};
+
+struct ReadRecords {
+  std::vector<Record> records;     ///< in file order
+  std::vector<BadLine> bad_lines;  ///< kept in the file, told to the user
+};
+
+class ResultsFolder {
+ public:
+  /// Creates the folder if need be. Throws std::runtime_error naming it when it cannot be created or written.
+  explicit ResultsFolder(std::filesystem::path folder);
+  const std::filesystem::path& path() const { return folder_; }
+
+  /// Appends one record. Throws std::runtime_error (disk full, …); the file is then as it was before.
+  void append(const Record& record) const;
+  /// All records. A missing file is no record.
+  ReadRecords read() const;
+  /// Stores the bytes of `file` as pictures/<sha256>.<ext> (moving it) and returns that relative path.
+  std::string keep_picture(const std::filesystem::path& file) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// The last usable record of each id, in the order of `ids`; an empty optional where there is none.
+std::vector<std::optional<Record>> latest_by_id(const std::vector<Record>& records,
+                                                const std::vector<std::string>& ids);
+
+}  // namespace textonbench

@@ -1,0 +1,173 @@
+#include "experiments/run_spec.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <limits>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "experiments/provenance.h"
+
+namespace textonbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<std::string_view, 10> keys{"method",   "params", "exemplar", "exemplar_sha256", "size",
+                                                "periodic", "seed",   "samples",  "metrics",         "pictures"};
+
+[[noreturn]] void fail(std::string_view key, std::string_view expected, const Json& found) {
+  throw std::invalid_argument(fmt::format("run spec: {}: expected {}, found {}", key, expected, found.dump()));
+}
+
+const Json& require(const Json& json, std::string_view key) {
+  const auto found = json.find(key);
+  if (found == json.end()) {
+    throw std::invalid_argument(fmt::format("run spec lacks the key \"{}\"", key));
+  }
+  return *found;
+}
+
+std::string read_text(const Json& json, std::string_view key) {
+  const Json& value = require(json, key);
+  if (!value.is_string()) {
+    fail(key, "a string", value);
+  }
+  return value.get<std::string>();
+}
+
+std::uint64_t read_whole(const Json& value, std::string_view key, std::uint64_t min, std::uint64_t max) {
+  const bool negative = value.is_number_integer() && !value.is_number_unsigned() && value.get<std::int64_t>() < 0;
+  if (!value.is_number_integer() || negative || value.get<std::uint64_t>() < min || value.get<std::uint64_t>() > max) {
+    fail(key, fmt::format("a whole number from {} to {}", min, max), value);
+  }
+  return value.get<std::uint64_t>();
+}
+
+int read_int(const Json& value, std::string_view key, std::uint64_t min) {
+  return static_cast<int>(read_whole(value, key, min, std::numeric_limits<int>::max()));
+}
+
+std::vector<std::string> read_names(const Json& json, std::string_view key) {
+  const Json& value = require(json, key);
+  std::vector<std::string> names;
+  if (!value.is_array()) {
+    fail(key, "a list of strings", value);
+  }
+  for (const Json& name : value) {
+    if (!name.is_string()) {
+      fail(key, "a list of strings", value);
+    }
+    names.push_back(name.get<std::string>());
+  }
+  return names;
+}
+
+ParamValue read_param(const std::string& name, const Json& value) {
+  if (value.is_boolean()) {
+    return value.get<bool>();
+  }
+  if (value.is_number_float()) {
+    return value.get<double>();
+  }
+  if (value.is_number_integer()) {
+    return value.get<std::int64_t>();
+  }
+  if (value.is_string()) {
+    return value.get<std::string>();
+  }
+  fail("params." + name, "a string, a number, true or false", value);
+}
+
+/// One word for a POSIX shell.
+std::string quote(const std::string& word) {
+  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) {
+    return word;
+  }
+  std::string quoted = "'";
+  for (const char c : word) {
+    quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  }
+  return quoted + "'";
+}
+
+}  // namespace
+
+Json to_json(const RunSpec& spec) {
+  Json params = Json::object();
+  for (const auto& [name, value] : spec.params) {
+    std::visit([&, key = name](const auto& v) { params[key] = v; }, value);
+  }
+  Json json;
+  json["method"] = spec.method;
+  json["params"] = std::move(params);
+  json["exemplar"] = spec.exemplar;
+  json["exemplar_sha256"] = spec.exemplar_sha256;
+  json["size"] = {spec.size.width, spec.size.height};
+  json["periodic"] = spec.periodic;
+  json["seed"] = spec.seed;
+  json["samples"] = spec.samples;
+  json["metrics"] = spec.metrics;
+  json["pictures"] = spec.pictures;
+  return json;
+}
+
+RunSpec run_spec_from_json(const Json& json) {
+  if (!json.is_object()) {
+    throw std::invalid_argument(fmt::format("run spec: expected a JSON object, found {}", json.dump()));
+  }
+  for (const auto& [key, value] : json.items()) {
+    if (std::ranges::find(keys, key) == keys.end()) {
+      throw std::invalid_argument(fmt::format("run spec: unknown key \"{}\"{}", key, did_you_mean(key, keys)));
+    }
+  }
+  RunSpec spec;
+  spec.method = read_text(json, "method");
+  const Json& params = require(json, "params");
+  if (!params.is_object()) {
+    fail("params", "an object", params);
+  }
+  for (const auto& [name, value] : params.items()) {
+    spec.params.emplace(name, read_param(name, value));
+  }
+  spec.exemplar = read_text(json, "exemplar");
+  spec.exemplar_sha256 = read_text(json, "exemplar_sha256");
+  const Json& size = require(json, "size");
+  if (!size.is_array() || size.size() != 2) {
+    fail("size", "[width, height]", size);
+  }
+  spec.size = {read_int(size[0], "size", 0), read_int(size[1], "size", 0)};
+  const Json& periodic = require(json, "periodic");
+  if (!periodic.is_boolean()) {
+    fail("periodic", "true or false", periodic);
+  }
+  spec.periodic = periodic.get<bool>();
+  spec.seed = read_whole(require(json, "seed"), "seed", 0, std::numeric_limits<std::uint64_t>::max());
+  spec.samples = read_int(require(json, "samples"), "samples", 1);
+  spec.metrics = read_names(json, "metrics");
+  spec.pictures = read_names(json, "pictures");
+  return spec;
+}
+
+std::string run_id(const RunSpec& spec) {
+  return sha256(to_json(spec).dump() + "\ncode " + code_version()).substr(0, 16);
+}
+
+std::string command_line(const RunSpec& spec) {
+  std::string command = fmt::format("textonbench measure {} {}", quote(spec.method), quote(spec.exemplar));
+  for (const auto& [name, value] : spec.params) {
+    command += " -p " + quote(fmt::format("{}={}", name, to_string(value)));
+  }
+  // On the command line a sample is a torus unless a size is given.
+  if (spec.size != Extent{}) {
+    command += fmt::format(" --size {}x{}{}", spec.size.width, spec.size.height, spec.periodic ? " --periodic" : "");
+  } else if (!spec.periodic) {
+    command += " --no-periodic";
+  }
+  return command + fmt::format(" --seed {} --samples {}", spec.seed, spec.samples);
+}
+
+}  // namespace textonbench

@@ -1,0 +1,42 @@
+// One run: everything that decides its numbers, and nothing else.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "methods/base/params.h"
+#include "methods/method.h"
+
+namespace textonbench {
+
+/// A model of one exemplar and what is measured on it. `samples` samples are drawn, with seeds derived from `seed`.
+struct RunSpec {
+  std::string method;
+  std::map<std::string, ParamValue> params;  ///< complete: defaults included
+  std::string exemplar;
+  std::string exemplar_sha256;
+  Extent size;  ///< of the samples; 0x0 means the exemplar's own size
+  bool periodic = true;
+  std::uint64_t seed = 1;
+  int samples = 1;
+  std::vector<std::string> metrics;   ///< catalogue names, sorted
+  std::vector<std::string> pictures;  ///< names of pictures to keep, sorted
+  double timeout_seconds = 300;       ///< not part of the identity
+};
+
+/// JSON with a fixed key order; `timeout_seconds` is left out.
+nlohmann::ordered_json to_json(const RunSpec& spec);
+/// Throws std::invalid_argument naming the key that is missing or wrong.
+RunSpec run_spec_from_json(const nlohmann::ordered_json& json);
+
+/// 16 hexadecimal digits: SHA-256 of to_json(spec) and of code_version(). Two runs with the same id compute the same.
+std::string run_id(const RunSpec& spec);
+
+/// The command that repeats the run by hand: "textonbench measure rpn mamurk_a_1 -p phase=added --seed 1 --samples 8
+/// …".
+std::string command_line(const RunSpec& spec);
+
+}  // namespace textonbench

@@ -1,0 +1,179 @@
+#include "experiments/sweep.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+#include <string_view>
+
+#include "experiments/toml_reader.h"
+
+namespace textonbench {
+namespace {
+
+/// Positions in Sweep's list of axes.
+enum Axis : std::size_t { method_axis, exemplar_axis, size_axis, periodic_axis, first_param_axis };
+
+}  // namespace
+
+SourcePlace place_of(const RunsTable& table, const std::string& path) {
+  for (const std::string& candidate : {path, path.substr(0, path.rfind('['))}) {
+    if (const auto found = table.places.find(candidate); found != table.places.end()) {
+      return found->second;
+    }
+  }
+  return table.place;
+}
+
+bool Exclusion::matches(const RunSpec& run) const {
+  return (!method || run.method == *method) && (!exemplar || run.exemplar == *exemplar) &&
+         (!seed || run.seed == *seed) && std::ranges::all_of(params, [&](const auto& param) {
+           const auto own = run.params.find(param.first);
+           return own != run.params.end() && own->second == param.second;
+         });
+}
+
+Sweep::Sweep(const RunsTable& table, SweepChoices choices, const ExemplarCatalog& catalog)
+    : table_(table), choices_(std::move(choices)), params_(table.params.begin(), table.params.end()) {
+  axes_ = {{"method", choices_.methods.size()},
+           {"exemplars", choices_.exemplars.size()},
+           {"size", table.sizes.size()},
+           {"periodic", table.periodic.size()}};
+  for (const auto& [name, values] : params_) {
+    const std::string path = "params." + name;
+    axes_.emplace_back(path, values.size());
+    for (const MethodEntry* method : choices_.methods) {
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        check_param(*method, name, values[i], path, fmt::format("{}[{}]", path, i));
+      }
+    }
+  }
+  axes_.emplace_back("seeds", table.seeds.size());
+  if (table.zip) {
+    check_zip();
+  }
+  for (std::size_t i = 0; i < table.exclude.size(); ++i) {
+    exclusions_.push_back(read_exclusion(i, catalog));
+  }
+}
+
+std::size_t Sweep::count() const {
+  constexpr std::size_t largest = std::numeric_limits<std::size_t>::max();
+  std::size_t product = 1;
+  std::size_t longest = 1;
+  for (const auto& [path, length] : axes_) {
+    product = product <= largest / length ? product * length : largest;
+    longest = std::max(longest, length);
+  }
+  return table_.zip ? longest : product;
+}
+
+void Sweep::expand(const std::function<void(RunSpec, const ChosenExemplar&)>& take) const {
+  const std::size_t runs = count();
+  bool any = false;
+  std::vector<std::size_t> digits(axes_.size());
+  for (std::size_t run = 0; run < runs; ++run) {
+    std::size_t rest = run;
+    for (std::size_t axis = axes_.size(); axis-- > 0;) {
+      const std::size_t length = axes_[axis].second;
+      digits[axis] = table_.zip ? std::min(run, length - 1) : rest % length;
+      rest /= length;
+    }
+    RunSpec spec = make_spec(digits);
+    if (std::ranges::none_of(exclusions_, [&](const Exclusion& exclusion) { return exclusion.matches(spec); })) {
+      any = true;
+      take(std::move(spec), *choices_.exemplars[digits[exemplar_axis]]);
+    }
+  }
+  if (!any) {
+    throw ConfigError(place_of(table_, "exclude"), "empty sweep: exclude leaves no run");
+  }
+}
+
+void Sweep::check_zip() const {
+  const auto longest = std::ranges::max_element(axes_, {}, &std::pair<std::string, std::size_t>::second);
+  for (const auto& [path, length] : axes_) {
+    if (length != 1 && length != longest->second) {
+      throw ConfigError(place_of(table_, path), fmt::format("combine = \"zip\": {} has {} values where {} has {}", path,
+                                                            length, longest->first, longest->second));
+    }
+  }
+}
+
+/// The value as the method takes it. A name that the method lacks is told at its key, a bad value where it stands.
+ParamValue Sweep::check_param(const MethodEntry& method, const std::string& name, const ParamValue& value,
+                              const std::string& path, const std::string& element) const {
+  const bool known = std::ranges::find(method.params, name, &ParamSpec::name) != method.params.end();
+  return at_place(table_, known ? element : key_path(path), [&] {
+    try {
+      return Params(method.params, {{name, value}}).values().at(name);
+    } catch (const ParamError& error) {
+      throw std::invalid_argument(fmt::format("method {}: {}", method.name, error.what()));
+    }
+  });
+}
+
+Exclusion Sweep::read_exclusion(std::size_t index, const ExemplarCatalog& catalog) const {
+  Exclusion exclusion;
+  for (const auto& [key, value] : table_.exclude[index]) {
+    const std::string path = fmt::format("exclude[{}].{}", index, key);
+    const std::string text = to_string(value);
+    if (key == "method") {
+      exclusion.method = at_place(table_, path, [&] { return std::string(find_method(text).name); });
+    } else if (key == "exemplar") {
+      exclusion.exemplar = at_place(table_, path, [&] { return catalog.look_up(text).name; });
+    } else if (key == "seed") {
+      const std::int64_t* seed = std::get_if<std::int64_t>(&value);
+      if (seed == nullptr || *seed < 0) {
+        throw ConfigError(place_of(table_, path),
+                          fmt::format("exclude: seed: expected a whole number of at least 0, found {}", text));
+      }
+      exclusion.seed = static_cast<std::uint64_t>(*seed);
+    } else {
+      exclusion.params.emplace(key, read_exclusion_param(key, value, path));
+    }
+  }
+  return exclusion;
+}
+
+/// Excluding by a parameter makes sense as soon as one of the methods has it.
+ParamValue Sweep::read_exclusion_param(const std::string& name, const ParamValue& value,
+                                       const std::string& path) const {
+  std::vector<std::string_view> known{"method", "exemplar", "seed"};
+  for (const MethodEntry* method : choices_.methods) {
+    for (const ParamSpec& spec : method->params) {
+      if (spec.name == name) {
+        return check_param(*method, name, value, path, path);
+      }
+      if (std::ranges::find(known, spec.name) == known.end()) {
+        known.push_back(spec.name);
+      }
+    }
+  }
+  throw ConfigError(place_of(table_, key_path(path)),
+                    fmt::format("unknown key \"{}\" in exclude{}; expected one of: {}", name, did_you_mean(name, known),
+                                fmt::join(known, ", ")));
+}
+
+RunSpec Sweep::make_spec(const std::vector<std::size_t>& digits) const {
+  const MethodEntry& method = *choices_.methods[digits[method_axis]];
+  const ChosenExemplar& exemplar = *choices_.exemplars[digits[exemplar_axis]];
+  std::map<std::string, ParamValue> given;
+  for (std::size_t i = 0; i < params_.size(); ++i) {
+    given.emplace(params_[i].first, params_[i].second[digits[first_param_axis + i]]);
+  }
+  return {.method = std::string(method.name),
+          .params = Params(method.params, given).values(),
+          .exemplar = exemplar.info->name,
+          .exemplar_sha256 = exemplar.sha256,
+          .size = table_.sizes[digits[size_axis]],
+          .periodic = table_.periodic[digits[periodic_axis]],
+          .seed = table_.seeds[digits.back()],
+          .samples = table_.samples,
+          .metrics = choices_.metrics,
+          .pictures = choices_.pictures,
+          .timeout_seconds = table_.timeout_seconds};
+}
+
+}  // namespace textonbench

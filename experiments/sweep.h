@@ -1,0 +1,81 @@
+// One [[runs]] table as a set of axes: how many runs it makes, and which.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiments/config.h"
+#include "experiments/exemplars.h"
+#include "experiments/run_spec.h"
+#include "methods/method.h"
+
+namespace textonbench {
+
+/// An exemplar of the catalog with the hash of its file.
+struct ChosenExemplar {
+  const ExemplarInfo* info;
+  std::string sha256;  ///< empty when the exemplar is not available
+};
+
+/// What a table's lists of names stand for.
+struct SweepChoices {
+  std::vector<const MethodEntry*> methods;
+  std::vector<const ChosenExemplar*> exemplars;
+  std::vector<std::string> metrics, pictures;
+};
+
+/// The conditions of one element of `exclude`; what is not set matches everything.
+struct Exclusion {
+  std::optional<std::string> method, exemplar;
+  std::optional<std::uint64_t> seed;
+  std::map<std::string, ParamValue> params;
+
+  bool matches(const RunSpec& run) const;
+};
+
+class Sweep {
+ public:
+  /// Checks the parameters and exclusions of `table`, which must outlive the sweep, and the lengths of a zip. Throws
+  /// ConfigError.
+  Sweep(const RunsTable& table, SweepChoices choices, const ExemplarCatalog& catalog);
+
+  /// Number of runs before `exclude`; the largest number there is when it does not fit.
+  std::size_t count() const;
+
+  /// Calls `take` for every run that is not excluded, seeds varying fastest. Throws ConfigError when none is left.
+  void expand(const std::function<void(RunSpec, const ChosenExemplar&)>& take) const;
+
+ private:
+  ParamValue check_param(const MethodEntry& method, const std::string& name, const ParamValue& value,
+                         const std::string& path, const std::string& element) const;
+  Exclusion read_exclusion(std::size_t index, const ExemplarCatalog& catalog) const;
+  ParamValue read_exclusion_param(const std::string& name, const ParamValue& value, const std::string& path) const;
+  void check_zip() const;
+  RunSpec make_spec(const std::vector<std::size_t>& digits) const;
+
+  const RunsTable& table_;
+  SweepChoices choices_;
+  std::vector<std::pair<std::string, std::vector<ParamValue>>> params_;
+  std::vector<Exclusion> exclusions_;
+  std::vector<std::pair<std::string, std::size_t>> axes_;  ///< key and number of values, slowest first
+};
+
+/// Where `path` ("seeds[1]") stands in the config: its own place, else that of the list, else of the table.
+SourcePlace place_of(const RunsTable& table, const std::string& path);
+
+/// Calls `look_up`, giving the std::invalid_argument that it throws the place of `path`.
+template <class LookUp>
+auto at_place(const RunsTable& table, const std::string& path, const LookUp& look_up) {
+  try {
+    return look_up();
+  } catch (const std::invalid_argument& error) {
+    throw ConfigError(place_of(table, path), error.what());
+  }
+}
+
+}  // namespace textonbench

@@ -1,0 +1,30 @@
+// The explicit list of methods.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "methods/method.h"
+#include "methods/spectral/adsn.h"
+#include "methods/spectral/rpn.h"
+
+namespace textonbench {
+
+std::span<const MethodEntry> method_catalog() {
+  static const std::vector<MethodEntry> entries = {rpn_entry(), adsn_entry()};
+  return entries;
+}
+
+const MethodEntry& find_method(std::string_view name) {
+  const auto catalog = method_catalog();
+  const auto found = std::ranges::find(catalog, name, &MethodEntry::name);
+  if (found != catalog.end()) {
+    return *found;
+  }
+  std::vector<std::string_view> names;
+  std::ranges::transform(catalog, std::back_inserter(names), &MethodEntry::name);
+  throw std::invalid_argument(
+      fmt::format("unknown method \"{}\"{}; \"textonbench list methods\" shows all", name, did_you_mean(name, names)));
+}
+
+}  // namespace textonbench

@@ -1,0 +1,87 @@
+// The one interface of every texture model: analyze an exemplar, get a Model, synthesise from it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "methods/base/exemplar.h"
+#include "methods/base/gaussian_model.h"
+#include "methods/base/image.h"
+#include "methods/base/params.h"
+#include "methods/base/random.h"
+
+namespace textonbench {
+
+struct Point2 {
+  double x = 0;
+  double y = 0;
+  friend bool operator==(const Point2&, const Point2&) = default;
+};
+
+/// Where a sample is wanted: `size` pixels whose centres are at origin + step * (i, j), in pixels of the exemplar.
+/// A periodic domain is a torus of that size.
+struct Domain {
+  Extent size;
+  Point2 origin{};
+  double step = 1;
+  bool periodic = false;
+};
+
+/// What a model is fitted to.
+struct Problem {
+  const Exemplar& exemplar;
+};
+
+/// The model's own second-order law, in closed form.
+class Gaussian {
+ public:
+  virtual ~Gaussian() = default;
+  /// Mean of each channel.
+  virtual std::vector<double> mean() const = 0;
+  /// Cross-spectrum at the frequencies (kx / W, ky / H) of a grid, scaled as in gaussian_model.h. On a periodic domain
+  /// the grid is the domain's size; otherwise it is any grid, and the covariance on Z² is recovered exactly once
+  /// the grid is at least twice the support of the covariance.
+  virtual CrossSpectrum spectrum(Extent grid) const = 0;
+};
+
+/// Cost of a model: bytes that must be kept to synthesise, and arithmetic operations (a complex multiplication counts
+/// 6, an FFT 2.5 n log2 n a real plane) for each output pixel on `domain`.
+struct Footprint {
+  std::size_t model_bytes = 0;
+  double operations_per_pixel = 0;
+};
+
+/// What analysis returns: immutable, safe to share between threads. A capability that a model lacks is a null pointer.
+class Model {
+ public:
+  virtual ~Model() = default;
+  /// One sample. Same seed, same bits, whatever the number of threads. Throws std::invalid_argument with a reason for a
+  /// domain that MethodEntry::refuses would refuse.
+  virtual Image synthesize(const Domain& domain, Seed seed) const = 0;
+  virtual const Gaussian* gaussian() const { return nullptr; }
+  virtual Footprint footprint(const Domain& domain) const = 0;
+};
+
+/// One row of the catalogue.
+struct MethodEntry {
+  std::string_view name;       ///< as on the command line: "adsn"
+  std::string_view title;      ///< "Asymptotic discrete spot noise"
+  std::string_view reference;  ///< paper, section or equation
+  std::span<const ParamSpec> params;
+  /// A reason, in words for a user, why this method cannot serve the problem on this domain; nothing when it can.
+  std::optional<std::string> (*refuses)(const Problem&, const Params&, const Domain&);
+  std::unique_ptr<Model> (*analyze)(const Problem&, const Params&, Seed);
+};
+
+/// All methods, in the order they are listed. See catalog.cpp.
+std::span<const MethodEntry> method_catalog();
+
+/// Entry of that name. Throws std::invalid_argument naming the nearest known name.
+const MethodEntry& find_method(std::string_view name);
+
+}  // namespace textonbench

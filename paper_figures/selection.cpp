@@ -1,0 +1,106 @@
+#include "paper_figures/selection.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+namespace textonbench {
+namespace {
+
+constexpr std::size_t most_named = 5;
+
+std::string first_few(const std::vector<std::string>& names) {
+  const std::size_t shown = std::min(names.size(), most_named);
+  std::string text =
+      fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), "; "));
+  if (shown < names.size()) text += fmt::format("; and {} more", names.size() - shown);
+  return text;
+}
+
+/// Value of a provenance key -> how many records have it.
+std::map<std::string, std::size_t> count_values(const std::vector<SelectedRun>& runs, const char* key) {
+  std::map<std::string, std::size_t> counts;
+  for (const SelectedRun& run : runs) {
+    if (!run.record) continue;
+    const Record provenance = run.record->value("provenance", Record::object());
+    ++counts[provenance.value(key, std::string("unknown"))];
+  }
+  return counts;
+}
+
+std::optional<std::string> mixed(const std::vector<SelectedRun>& runs, const char* key, const char* title) {
+  const auto counts = count_values(runs, key);
+  if (counts.size() < 2) return std::nullopt;
+  std::vector<std::string> parts;
+  parts.reserve(counts.size());
+  for (const auto& [value, count] : counts) {
+    parts.push_back(fmt::format("{} ({} record{})", value, count, count == 1 ? "" : "s"));
+  }
+  return fmt::format("its records mix {}: {}", title, fmt::join(parts, ", "));
+}
+
+}  // namespace
+
+std::string SelectedRun::status() const { return record ? record->value("status", std::string("failed")) : "missing"; }
+
+std::string SelectedRun::reason() const {
+  if (!record) return "not run yet";
+  if (ok()) return "";
+  return fmt::format("{}: {}", status(), record->value("reason", std::string("no reason recorded")));
+}
+
+std::vector<SelectedRun> select_runs(const FigureTable& figure, const Plan& plan, const std::vector<Record>& records) {
+  std::vector<SelectedRun> selected;
+  for (const std::string& label : figure.runs) {
+    const auto table = plan.by_label.find(label);
+    if (table == plan.by_label.end()) continue;
+    for (const std::size_t i : table->second) selected.push_back({&plan.runs[i], label, std::nullopt});
+  }
+
+  std::vector<std::string> ids;
+  ids.reserve(selected.size());
+  for (const SelectedRun& run : selected) ids.push_back(run.planned->id);
+  std::vector<std::optional<Record>> found = latest_by_id(records, ids);
+  for (std::size_t i = 0; i < selected.size(); ++i) selected[i].record = std::move(found[i]);
+  return selected;
+}
+
+std::optional<std::string> unusable(const Config& config, const std::vector<SelectedRun>& runs) {
+  const std::string command = fmt::format("textonbench run {}", config_argument(config));
+  if (runs.empty()) {
+    return "it has no runs: none of its exemplars is available here (textonbench list exemplars says how to get them)";
+  }
+  std::vector<std::string> missing;
+  for (const SelectedRun& run : runs) {
+    if (!run.record) missing.push_back(describe(run));
+  }
+  if (!missing.empty()) {
+    return fmt::format("{} of its {} records {} missing: {}. To make them: {}", missing.size(), runs.size(),
+                       missing.size() == 1 ? "is" : "are", first_few(missing), command);
+  }
+  auto problem = mixed(runs, "code_version", "code versions");
+  if (!problem) problem = mixed(runs, "git_commit", "git commits");
+  if (problem) *problem += fmt::format(". To make them alike: {} --fresh", command);
+  return problem;
+}
+
+std::string describe(const SelectedRun& run) {
+  return fmt::format("{} on {}, seed {} (id {})", run.label, run.spec().exemplar, run.spec().seed, run.planned->id);
+}
+
+std::vector<std::string> exemplars_of(const std::vector<SelectedRun>& runs) {
+  std::vector<std::string> names;
+  for (const SelectedRun& run : runs) {
+    if (std::find(names.begin(), names.end(), run.spec().exemplar) == names.end()) names.push_back(run.spec().exemplar);
+  }
+  return names;
+}
+
+std::string config_argument(const Config& config) {
+  const std::string in_tree = "configs/" + config.name + ".toml";
+  const std::string file = config.file.generic_string();
+  return file.ends_with("/" + in_tree) ? in_tree : file;
+}
+
+}  // namespace textonbench

@@ -1,0 +1,173 @@
+#include "experiments/provenance.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <set>
+
+#include "tests/temporary_folder.h"
+
+namespace textonbench {
+namespace {
+
+using testing::HasSubstr;
+using testing::MatchesRegex;
+
+// FIPS 180-4 examples.
+TEST(Sha256Test, AgreesWithTheStandard) {
+  EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(Sha256Test, OfAFileIsThatOfItsBytes) {
+  const TemporaryFolder folder;
+  // Longer than one read, and not a multiple of it.
+  const std::string bytes(200001, '\x80');
+  std::ofstream(folder.path() / "file", std::ios::binary) << bytes;
+  EXPECT_EQ(sha256_of_file(folder.path() / "file"), sha256(bytes));
+}
+
+TEST(Sha256Test, NamesAFileThatCannotBeRead) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(sha256_of_file(folder.path() / "missing"), std::invalid_argument);
+  EXPECT_THROW(sha256_of_file(folder.path()), std::invalid_argument);
+}
+
+TEST(ProvenanceTest, TellsCodeMachineAndLibraries) {
+  const nlohmann::ordered_json p = provenance();
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : p.items()) keys.push_back(key);
+  EXPECT_THAT(keys, testing::ElementsAre("version", "code_version", "git_commit", "git_dirty", "compiler", "flags",
+                                         "build_type", "cpu", "cores", "threads", "os", "libraries", "fft_plans"));
+  EXPECT_THAT(p["version"].get<std::string>(), MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
+  EXPECT_THAT(p["git_commit"].get<std::string>(), MatchesRegex("[0-9a-f]{40}|unknown"));
+  EXPECT_TRUE(p["git_dirty"].is_boolean() || p["git_dirty"] == "unknown");
+  EXPECT_THAT(p["flags"].get<std::string>(), HasSubstr("-ffp-contract=off"));
+  EXPECT_GE(p["cores"].get<int>(), 1);
+  EXPECT_GE(p["threads"].get<int>(), 1);
+  for (const char* library : {"eigen", "fftw", "openimageio", "tbb", "fmt"}) {
+    EXPECT_THAT(p["libraries"][library].get<std::string>(), testing::ContainsRegex("[0-9]")) << library;
+  }
+}
+
+TEST(ProvenanceTest, CodeVersionIsAShortHash) { EXPECT_THAT(code_version(), MatchesRegex("[0-9a-f]{16}")); }
+
+/// Sets an environment variable for the time of a test.
+class ScopedVariable {
+ public:
+  ScopedVariable(const char* name, const std::string& value) : name_(name) {
+    if (const char* previous = std::getenv(name)) previous_ = previous;
+    setenv(name, value.c_str(), 1);
+  }
+  ScopedVariable(const ScopedVariable&) = delete;
+  ScopedVariable& operator=(const ScopedVariable&) = delete;
+  ~ScopedVariable() {
+    if (previous_) {
+      setenv(name_, previous_->c_str(), 1);
+    } else {
+      unsetenv(name_);
+    }
+  }
+
+ private:
+  const char* name_;
+  std::optional<std::string> previous_;
+};
+
+TEST(HomeFolderTest, IsTheOneThatTheVariableNames) {
+  const ScopedVariable home("TEXTONBENCH_HOME", TEXTONBENCH_SOURCE_DIR);
+  EXPECT_EQ(home_folder(), TEXTONBENCH_SOURCE_DIR);
+}
+
+TEST(HomeFolderTest, AVariableThatNamesAnotherFolderIsAnError) {
+  const TemporaryFolder folder;
+  const ScopedVariable home("TEXTONBENCH_HOME", folder.path().string());
+  try {
+    home_folder();
+    FAIL() << "expected an exception";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(HasSubstr(folder.path().string()), HasSubstr("configs/exemplars.toml")));
+  }
+}
+
+/// cmake/write_build_info.cmake on a small source tree of its own.
+class BuildInfoTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    write("methods/a.cpp", "int a;\n");
+    write("experiments/metrics/m.cpp", "int m;\n");
+    write("experiments/execute.cpp", "int e;\n");
+    write("experiments/runner.cpp", "int r;\n");
+  }
+
+  void write(const std::string& name, const std::string& text) const {
+    const std::filesystem::path file = folder_.path() / name;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+  }
+
+  /// The text after `name = "` in the header that the script writes, under the environment `prefix`.
+  std::string value_of(const std::string& name, const std::string& prefix = "") const {
+    const std::filesystem::path header = folder_.path() / "build_info.h";
+    const std::string command = prefix + " $(command -v cmake) -D SOURCE=" + folder_.path().string() +
+                                " -D OUTPUT=" + header.string() +
+                                " -D VERSION=1.2.3 -D COMPILER=c -D FLAGS=f -D BUILD_TYPE=b -P " +
+                                TEXTONBENCH_SOURCE_DIR + "/cmake/write_build_info.cmake";
+    EXPECT_EQ(std::system(command.c_str()), 0) << command;
+    std::ifstream in(header);
+    const std::string start = name + " = \"";
+    for (std::string line; std::getline(in, line);) {
+      const std::size_t at = line.find(start);
+      if (at != std::string::npos) return line.substr(at + start.size(), line.rfind('"') - at - start.size());
+    }
+    return {};
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(BuildInfoTest, TheCodeVersionFollowsWhatDecidesNumbersOnly) {
+  const std::string first = value_of("code_version");
+  EXPECT_THAT(first, MatchesRegex("[0-9a-f]{16}"));
+  write("experiments/runner.cpp", "int other;\n");
+  EXPECT_EQ(value_of("code_version"), first);
+  std::set<std::string> versions{first};
+  for (const char* name :
+       {"methods/a.cpp", "methods/new/b.h", "experiments/metrics/m.cpp", "experiments/execute.cpp"}) {
+    write(name, "int other;\n");
+    EXPECT_TRUE(versions.insert(value_of("code_version")).second) << name;
+  }
+}
+
+TEST_F(BuildInfoTest, AnUnchangedHeaderIsNotTouched) {
+  value_of("version");
+  const auto before = std::filesystem::last_write_time(folder_.path() / "build_info.h");
+  EXPECT_EQ(value_of("version"), "1.2.3");
+  EXPECT_EQ(std::filesystem::last_write_time(folder_.path() / "build_info.h"), before);
+}
+
+TEST_F(BuildInfoTest, WorksOutsideACheckout) {
+  EXPECT_EQ(value_of("git_commit"), "unknown");
+  EXPECT_EQ(value_of("git_state"), "unknown");
+}
+
+TEST_F(BuildInfoTest, TellsTheCommitAndWhetherFilesDiffer) {
+  const std::string git = "git -C " + folder_.path().string() + " -c user.name=t -c user.email=t@example.org ";
+  if (std::system((git + "init -q").c_str()) != 0) GTEST_SKIP() << "git is not installed";
+  EXPECT_EQ(value_of("git_commit"), "unknown") << "a checkout without a commit";
+  write(".gitignore", "build_info.h\n");
+  ASSERT_EQ(std::system((git + "add -A").c_str()), 0);
+  ASSERT_EQ(std::system((git + "commit -q -m first").c_str()), 0);
+  EXPECT_THAT(value_of("git_commit"), MatchesRegex("[0-9a-f]{40}"));
+  EXPECT_EQ(value_of("git_state"), "clean");
+  write("experiments/runner.cpp", "int other;\n");
+  EXPECT_EQ(value_of("git_state"), "dirty");
+  EXPECT_EQ(value_of("git_commit", "PATH=/nowhere"), "unknown") << "git is not installed";
+}
+
+}  // namespace
+}  // namespace textonbench

@@ -1,0 +1,46 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "experiments/metrics/metric.h"
+
+namespace textonbench {
+namespace {
+
+TEST(MetricCatalog, NamesAndOrderAreThoseThatScriptsKnow) {
+  std::vector<std::string_view> names;
+  names.reserve(metric_catalog().size());
+  for (const MetricEntry& entry : metric_catalog()) names.push_back(entry.name);
+  EXPECT_THAT(names, testing::ElementsAre("rme", "rme_printed", "ot_distance", "mean_error", "color_covariance_error",
+                                          "autocovariance_error_8", "autocovariance_error_32",
+                                          "autocovariance_error_quarter", "log_spectral_distance", "skewness",
+                                          "excess_kurtosis", "cramer_von_mises", "patch_distance", "analyze_seconds",
+                                          "synthesize_seconds", "ns_per_pixel", "model_bytes", "operations_per_pixel"));
+}
+
+TEST(MetricCatalog, EveryEntryIsDescribedAndCanBeMeasuredAtItsLevel) {
+  for (const MetricEntry& entry : metric_catalog()) {
+    SCOPED_TRACE(entry.name);
+    EXPECT_FALSE(entry.title.empty());
+    EXPECT_FALSE(entry.unit.empty());
+    EXPECT_FALSE(entry.reference.empty());
+    EXPECT_EQ(entry.of_model != nullptr, entry.level == MetricLevel::model);
+    EXPECT_EQ(entry.of_samples != nullptr, entry.level == MetricLevel::sample);
+    EXPECT_EQ(&find_metric(entry.name), &entry);
+  }
+}
+
+TEST(MetricCatalog, AnUnknownNameIsToldWithTheNearestOne) {
+  try {
+    find_metric("skewnes");
+    FAIL() << "expected an error";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "unknown metric \"skewnes\" (did you mean \"skewness\"?); \"textonbench list metrics\" "
+                 "shows all");
+  }
+}
+
+}  // namespace
+}  // namespace textonbench
