@@ -1,5 +1,4 @@
 # `cmake --install`: the program with its data, and the methods as a library for find_package(textonbench).
-include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/textonbench)

@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::array<std::string_view, 10> keys{"method",   "params", "exemplar", "exemplar_sha256", "size",
                                                 "periodic", "seed",   "samples",  "metrics",         "pictures"};
 
-[[noreturn]] void fail(std::string_view key, std::string_view expected, const Json& found) {
+[[noreturn]] void refuse(std::string_view key, std::string_view expected, const Json& found) {
   throw std::invalid_argument(fmt::format("run spec: {}: expected {}, found {}", key, expected, found.dump()));
 }
 
@@ -33,7 +33,7 @@ const Json& require(const Json& json, std::string_view key) {
 std::string read_text(const Json& json, std::string_view key) {
   const Json& value = require(json, key);
   if (!value.is_string()) {
-    fail(key, "a string", value);
+    refuse(key, "a string", value);
   }
   return value.get<std::string>();
 }
@@ -41,7 +41,7 @@ std::string read_text(const Json& json, std::string_view key) {
 std::uint64_t read_whole(const Json& value, std::string_view key, std::uint64_t min, std::uint64_t max) {
   const bool negative = value.is_number_integer() && !value.is_number_unsigned() && value.get<std::int64_t>() < 0;
   if (!value.is_number_integer() || negative || value.get<std::uint64_t>() < min || value.get<std::uint64_t>() > max) {
-    fail(key, fmt::format("a whole number from {} to {}", min, max), value);
+    refuse(key, fmt::format("a whole number from {} to {}", min, max), value);
   }
   return value.get<std::uint64_t>();
 }
@@ -54,11 +54,11 @@ std::vector<std::string> read_names(const Json& json, std::string_view key) {
   const Json& value = require(json, key);
   std::vector<std::string> names;
   if (!value.is_array()) {
-    fail(key, "a list of strings", value);
+    refuse(key, "a list of strings", value);
   }
   for (const Json& name : value) {
     if (!name.is_string()) {
-      fail(key, "a list of strings", value);
+      refuse(key, "a list of strings", value);
     }
     names.push_back(name.get<std::string>());
   }
@@ -78,7 +78,7 @@ ParamValue read_param(const std::string& name, const Json& value) {
   if (value.is_string()) {
     return value.get<std::string>();
   }
-  fail("params." + name, "a string, a number, true or false", value);
+  refuse("params." + name, "a string, a number, true or false", value);
 }
 
 /// One word for a POSIX shell.
@@ -128,7 +128,7 @@ RunSpec run_spec_from_json(const Json& json) {
   spec.method = read_text(json, "method");
   const Json& params = require(json, "params");
   if (!params.is_object()) {
-    fail("params", "an object", params);
+    refuse("params", "an object", params);
   }
   for (const auto& [name, value] : params.items()) {
     spec.params.emplace(name, read_param(name, value));
@@ -137,12 +137,12 @@ RunSpec run_spec_from_json(const Json& json) {
   spec.exemplar_sha256 = read_text(json, "exemplar_sha256");
   const Json& size = require(json, "size");
   if (!size.is_array() || size.size() != 2) {
-    fail("size", "[width, height]", size);
+    refuse("size", "[width, height]", size);
   }
   spec.size = {read_int(size[0], "size", 0), read_int(size[1], "size", 0)};
   const Json& periodic = require(json, "periodic");
   if (!periodic.is_boolean()) {
-    fail("periodic", "true or false", periodic);
+    refuse("periodic", "true or false", periodic);
   }
   spec.periodic = periodic.get<bool>();
   spec.seed = read_whole(require(json, "seed"), "seed", 0, std::numeric_limits<std::uint64_t>::max());

@@ -18,8 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
-
 constexpr const char* report_title = "Gaussian micro-textures, measured";
 
 std::set<std::string> missing_names(const std::vector<ReportConfig>& configs) {

@@ -17,8 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
-
 Json fact(const std::string& title, const std::string& value, const std::string& link = "") {
   return {{"title", title}, {"value", value}, {"link", or_null(link)}};
 }

@@ -13,8 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
-
 std::string csv_number(const std::optional<double>& value) { return value ? format_exact(*value) : ""; }
 
 std::string csv_line(const std::vector<std::string>& fields) {

@@ -14,4 +14,9 @@ std::string render_template(std::string_view name, const nlohmann::ordered_json&
 /// Text of a file of the templates folder ("report.css"), unchanged. Throws std::runtime_error when it is missing.
 std::string template_file(std::string_view name);
 
+/// Null, so an absent section, for an empty text.
+inline nlohmann::ordered_json or_null(const std::string& text) {
+  return text.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(text);
+}
+
 }  // namespace textonbench

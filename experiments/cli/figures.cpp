@@ -10,13 +10,13 @@
 namespace textonbench::cli {
 namespace {
 
-struct Options {
+struct FiguresOptions {
   std::vector<std::string> configs;
   Profile profile = Profile::quick;
   bool json = false;
 };
 
-int make(const Options& options, const GlobalOptions& globals) {
+int make(const FiguresOptions& options, const GlobalOptions& globals) {
   const std::filesystem::path home = home_folder();
   const ExemplarCatalog exemplars(home);
   const ResultsFolder results(globals.results);
@@ -55,7 +55,7 @@ int make(const Options& options, const GlobalOptions& globals) {
 }  // namespace
 
 Command figures_command(CLI::App& app, const GlobalOptions& globals) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<FiguresOptions>();
   CLI::App* command = app.add_subcommand("figures", "Make the figures of configs from recorded runs");
   command->add_option("CONFIG", options->configs, "Names (textonbench list configs) or files (all configs)");
   add_profile_option(*command, &options->profile);

@@ -13,14 +13,14 @@
 namespace textonbench::cli {
 namespace {
 
-struct Options {
+struct MeasureOptions {
   ModelOptions model;
   int samples = 8;
   std::vector<std::string> metrics;
   bool json = false;
 };
 
-RunSpec make_spec(const Options& options, const ExemplarInfo& exemplar) {
+RunSpec make_spec(const MeasureOptions& options, const ExemplarInfo& exemplar) {
   const MethodEntry& method = find_method(options.model.method);
   RunSpec spec;
   spec.method = options.model.method;
@@ -57,7 +57,7 @@ void print_metrics(const Record& metrics) {
               rows);
 }
 
-int measure(const Options& options, const GlobalOptions& globals) {
+int measure(const MeasureOptions& options, const GlobalOptions& globals) {
   const tbb::global_control threads = limit_threads(globals);
   const ExemplarCatalog catalog(home_folder());
   const ExemplarInfo exemplar = find_exemplar(catalog, options.model.exemplar);
@@ -89,7 +89,7 @@ int measure(const Options& options, const GlobalOptions& globals) {
 }  // namespace
 
 Command measure_command(CLI::App& app, const GlobalOptions& globals) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MeasureOptions>();
   CLI::App* command = app.add_subcommand("measure", "Measure how good and how fast one model is");
   options->model.add_to(*command);
   command->add_option("--samples", options->samples, "Samples to draw")

@@ -10,13 +10,13 @@
 namespace textonbench::cli {
 namespace {
 
-struct Options {
+struct ReportOptions {
   std::vector<std::string> configs;
   Profile profile = Profile::quick;
   bool json = false;
 };
 
-int write(const Options& options, const GlobalOptions& globals) {
+int write(const ReportOptions& options, const GlobalOptions& globals) {
   const std::filesystem::path home = home_folder();
   const ExemplarCatalog exemplars(home);
   const ResultsFolder results(globals.results);
@@ -39,7 +39,7 @@ int write(const Options& options, const GlobalOptions& globals) {
 }  // namespace
 
 Command report_command(CLI::App& app, const GlobalOptions& globals) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReportOptions>();
   CLI::App* command = app.add_subcommand("report", "Write the HTML report from recorded runs");
   command->add_option("CONFIG", options->configs, "Names (textonbench list configs) or files (all configs)");
   add_profile_option(*command, &options->profile);

@@ -15,7 +15,7 @@
 namespace textonbench::cli {
 namespace {
 
-struct Options {
+struct RunCommandOptions {
   std::vector<std::string> configs;
   Profile profile = Profile::quick;
   int jobs = 1;
@@ -24,7 +24,7 @@ struct Options {
 };
 
 /// The plans of all configs as one, each run once.
-Plan joint_plan(const Options& options, const std::filesystem::path& home, const ExemplarCatalog& exemplars) {
+Plan joint_plan(const RunCommandOptions& options, const std::filesystem::path& home, const ExemplarCatalog& exemplars) {
   constexpr std::size_t usual_limit = 20000;
   const std::size_t limit = options.yes_large ? std::numeric_limits<std::size_t>::max() : usual_limit;
   Plan joint;
@@ -64,7 +64,7 @@ int show_plan(const Plan& plan, bool json) {
   return 0;
 }
 
-int run(const Options& options, const GlobalOptions& globals) {
+int run(const RunCommandOptions& options, const GlobalOptions& globals) {
   const std::filesystem::path home = home_folder();
   const ExemplarCatalog exemplars(home);
   Plan plan = joint_plan(options, home, exemplars);
@@ -110,7 +110,7 @@ int run(const Options& options, const GlobalOptions& globals) {
 }  // namespace
 
 Command run_command(CLI::App& app, const GlobalOptions& globals) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunCommandOptions>();
   CLI::App* command = app.add_subcommand("run", "Run experiment configs; what is recorded already is reused");
   command->add_option("CONFIG", options->configs, "Names (textonbench list configs) or files")->required();
   add_profile_option(*command, &options->profile);

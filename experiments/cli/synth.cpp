@@ -12,13 +12,13 @@
 namespace textonbench::cli {
 namespace {
 
-struct Options {
+struct SynthOptions {
   ModelOptions model;
   std::filesystem::path output;
   bool json = false;
 };
 
-int synthesize(const Options& options, const GlobalOptions& globals) {
+int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
   const tbb::global_control threads = limit_threads(globals);
   const ModelOptions& asked = options.model;
   const MethodEntry& method = find_method(asked.method);
@@ -68,7 +68,7 @@ int synthesize(const Options& options, const GlobalOptions& globals) {
 }  // namespace
 
 Command synth_command(CLI::App& app, const GlobalOptions& globals) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SynthOptions>();
   CLI::App* synth = app.add_subcommand("synth", "Fit a model to an exemplar and draw one sample");
   options->model.add_to(*synth);
   synth->add_option("-o,--output", options->output, "Picture to write: .png (8 bit, clamped) or .exr (float)")

@@ -99,7 +99,7 @@ void execute(fftwf_plan plan, std::complex<float>* in_place) {
   fftwf_execute_dft(plan, bins, bins);
 }
 
-constexpr int width = ColumnBlock::width;
+constexpr int block_width = ColumnBlock::width;
 
 // Four bins as four 64-bit lanes, for the compiler to keep in vector registers.
 using Lanes [[gnu::vector_size(32)]] = std::int64_t;
@@ -200,7 +200,7 @@ void split_spectra(const std::complex<float>* z, int length, std::complex<float>
   }
 }
 
-int block_count(Extent raster) { return raster.width / 2 / width + 1; }
+int block_count(Extent raster) { return raster.width / 2 / block_width + 1; }
 
 /// A block of this thread's own, kept between calls for the shape that was transformed last.
 const ColumnBlock& scratch_block(Extent raster, int channels) {
@@ -214,11 +214,11 @@ const ColumnBlock& scratch_block(Extent raster, int channels) {
 }
 
 std::complex<float>* scratch_row(int length) {
-  thread_local AlignedBuffer<std::complex<float>> row;
-  if (row.size() < static_cast<std::size_t>(length)) {
-    row = AlignedBuffer<std::complex<float>>(static_cast<std::size_t>(length));
+  thread_local std::optional<AlignedBuffer<std::complex<float>>> row;
+  if (!row || row->size() < static_cast<std::size_t>(length)) {
+    row.emplace(static_cast<std::size_t>(length));
   }
-  return row.data();
+  return row->data();  // NOLINT(clang-analyzer-unix.Malloc): the freed row is the one that was replaced
 }
 
 /// Calls body(channel, y) for y = 0, 2, 4, … of every channel.
@@ -255,12 +255,12 @@ Spectrum::Spectrum(Extent raster, int channels) : Spectrum(uninitialized(raster,
 
 ColumnBlock::ColumnBlock(Extent raster, int channels)
     : stride_((raster.height + 7) / 8 * 8 + 8),  // not a power of two, which would fill few sets of the cache
-      data_(static_cast<std::size_t>(stride_ * width * channels)) {
+      data_(static_cast<std::size_t>(stride_ * block_width * channels)) {
   data_.set_zero();
 }
 
 void copy_columns(const Spectrum& spectrum, int channel, int first, const ColumnBlock& block) {
-  transpose(spectrum.row(channel, 0).data() + first, spectrum.row_stride(), spectrum.rows(), width,
+  transpose(spectrum.row(channel, 0).data() + first, spectrum.row_stride(), spectrum.rows(), block_width,
             block.column(channel, 0), block.stride());
 }
 
@@ -279,12 +279,12 @@ Spectrum forward_fft(const Image& image) {
   const int blocks = block_count(image.extent());
   parallel_for(image.channels() * blocks, [&, height = height](int i) {
     const ColumnBlock& block = scratch_block(image.extent(), 1);
-    std::complex<float>* bins = spectrum.row(i / blocks, 0).data() + std::ptrdiff_t{i % blocks} * width;
-    transpose(bins, spectrum.row_stride(), height, width, block.column(0, 0), block.stride());
-    for (int k = 0; k < width; ++k) {
+    std::complex<float>* bins = spectrum.row(i / blocks, 0).data() + std::ptrdiff_t{i % blocks} * block_width;
+    transpose(bins, spectrum.row_stride(), height, block_width, block.column(0, 0), block.stride());
+    for (int k = 0; k < block_width; ++k) {
       execute(columns, block.column(0, k));
     }
-    transpose(block.column(0, 0), block.stride(), width, height, bins, spectrum.row_stride());
+    transpose(block.column(0, 0), block.stride(), block_width, height, bins, spectrum.row_stride());
   });
   return spectrum;
 }
@@ -296,13 +296,13 @@ Image unnormalized_inverse_fft(Extent raster, int channels, const ColumnSource& 
   const fftwf_plan columns = plan_cache().get(raster.height, FFTW_BACKWARD);
   parallel_for(block_count(raster), [&](int i) {
     const ColumnBlock& block = scratch_block(raster, channels);
-    source(i * width, block);
+    source(i * block_width, block);
     for (int c = 0; c < channels; ++c) {
-      for (int k = 0; k < width; ++k) {
+      for (int k = 0; k < block_width; ++k) {
         execute(columns, block.column(c, k));
       }
-      transpose(block.column(c, 0), block.stride(), width, raster.height,
-                reinterpret_cast<std::complex<float>*>(image.plane(c)) + std::ptrdiff_t{i} * width,
+      transpose(block.column(c, 0), block.stride(), block_width, raster.height,
+                reinterpret_cast<std::complex<float>*>(image.plane(c)) + std::ptrdiff_t{i} * block_width,
                 image.row_stride() / 2);
     }
   });

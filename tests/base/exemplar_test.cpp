@@ -7,8 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace textonbench {
-namespace {
+namespace textonbench::exemplar_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -57,5 +56,4 @@ TEST(RequireUsable, RefusesConstantColor) {
   expect_refused(exemplar, "is constant");
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::exemplar_test

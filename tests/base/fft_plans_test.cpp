@@ -11,8 +11,7 @@
 #include "methods/base/fft.h"
 #include "tests/base/scratch_folder.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::fft_plans_test {
 
 using testing::HasSubstr;
 
@@ -69,5 +68,4 @@ TEST(FftPlans, RigorAndVersionAreTold) {
   EXPECT_THAT(fft_library_version(), HasSubstr("fftw-3"));
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::fft_plans_test

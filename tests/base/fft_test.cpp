@@ -19,8 +19,7 @@
 
 #include "methods/base/random.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::fft_test {
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;
@@ -303,5 +302,4 @@ TEST(GoodFftSize, IsTheLeastSmoothNumber) {
   }
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::fft_test

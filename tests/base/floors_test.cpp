@@ -14,8 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace textonbench {
-namespace {
+namespace textonbench::floors_test {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -166,5 +165,4 @@ TEST(Floors, PlantedIncludesAreJudged) {
   }
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::floors_test

@@ -10,8 +10,7 @@
 #include "methods/base/spectrum.h"
 #include "tests/texture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::gaussian_model_test {
 
 CrossSpectrum random_spectrum(Extent extent, int channels, int rank, std::uint64_t seed) {
   CrossSpectrum p;
@@ -256,5 +255,4 @@ TEST(BuresDistance, IsThatOfCommutingMatrices) {
   EXPECT_NEAR(bures_distance_squared(first, second), (a.cwiseSqrt() - b.cwiseSqrt()).squaredNorm(), 1e-12);
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::gaussian_model_test

@@ -19,8 +19,7 @@
 
 #include "tests/base/scratch_folder.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::image_io_test {
 
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
@@ -322,5 +321,4 @@ TEST(ReadImage, OtherKindsOfChannelsAreRefused) {
 
 TEST(ImageLibrary, TellsItsVersion) { EXPECT_THAT(image_library_version(), testing::StartsWith("2.")); }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::image_io_test

@@ -17,8 +17,7 @@
 #include "methods/base/random.h"
 #include "tests/base/scratch_folder.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::image_io_write_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -270,5 +269,4 @@ TEST(Resize, KeepsConstantsAndMeans) {
 
 TEST(Resize, ImpossibleSizesAreRefused) { EXPECT_THROW(resize(noise({8, 8}, 1), {0, 4}), std::invalid_argument); }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::image_io_write_test

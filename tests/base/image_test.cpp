@@ -9,8 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace textonbench {
-namespace {
+namespace textonbench::image_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -151,5 +150,4 @@ TEST(FindNonFinite, TellsTheFirstPlace) {
   EXPECT_EQ(place->y, 8);
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::image_test

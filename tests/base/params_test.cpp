@@ -11,8 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace textonbench {
-namespace {
+namespace textonbench::params_test {
 
 using testing::HasSubstr;
 using Given = std::map<std::string, ParamValue>;
@@ -176,5 +175,4 @@ TEST(NearestName, SuggestsOnlyWhatIsNear) {
   EXPECT_EQ(did_you_mean("kriging", names), "");
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::params_test

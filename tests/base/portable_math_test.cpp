@@ -11,8 +11,7 @@
 #include <numbers>
 #include <vector>
 
-namespace textonbench {
-namespace {
+namespace textonbench::portable_math_test {
 
 /// |value - exact| / |exact|, where 0 must be met exactly.
 double relative_error(long double value, long double exact) {
@@ -86,5 +85,4 @@ TEST(PortableCosSin, QuarterTurnsAreExact) {
   }
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::portable_math_test

@@ -15,8 +15,7 @@
 #include "methods/base/random.h"
 #include "tests/base/statistics.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::random_distribution_test {
 
 constexpr double false_alarm = 1e-6;
 
@@ -239,5 +238,4 @@ TEST(Statistics, PValuesAreThoseOfTheTables) {
   EXPECT_NEAR(kolmogorov_smirnov_p_value(uniform, [](double u) { return u; }), 0.05, 2e-3);
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::random_distribution_test

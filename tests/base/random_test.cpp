@@ -19,8 +19,7 @@
 
 #include "methods/base/portable_math.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::random_test {
 
 using Words = std::array<std::uint32_t, 4>;
 
@@ -232,5 +231,4 @@ TEST(Random, BitsAreFrozen) {
   EXPECT_EQ(random.poisson(1e15), 999'999'997'738'655);
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::random_test

@@ -7,8 +7,7 @@
 #include "methods/base/image_io.h"
 #include "tests/texture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::spectrum_test {
 
 /// Sum over the neighbors of (x, y), on the torus or inside the image, of u(neighbor) − u(x, y).
 double laplacian(const Image& u, int c, int x, int y, bool torus) {
@@ -142,5 +141,4 @@ TEST(SpectrumPictures, ShowAPlaneWaveWhereItIs) {
   EXPECT_NEAR(phase_picture(u).at(0, 16 + 5, 12 + 3), 0.5, 1e-4);
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::spectrum_test

@@ -10,8 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace textonbench {
-namespace {
+namespace textonbench::tracked_text_test {
 
 /// Why a line of a tracked text file must not stay, or nothing.
 std::string line_violation(const std::string& file, const std::string& line) {
@@ -87,5 +86,4 @@ TEST(TrackedText, PlantedLinesAreJudged) {
   EXPECT_EQ(line_violation("a.cpp", "mkdtemp(\"runXXXXXX\")"), "");
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::tracked_text_test

@@ -10,8 +10,7 @@
 #include "tests/cli/program.h"
 #include "tests/temporary_folder.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::cli_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -198,5 +197,4 @@ TEST_F(CliTest, AHomeFolderWithoutConfigsIsAnError) {
   EXPECT_THAT(outcome.err, HasSubstr("TEXTONBENCH_HOME"));
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::cli_test

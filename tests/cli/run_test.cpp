@@ -13,8 +13,7 @@
 #include "tests/cli/program.h"
 #include "tests/temporary_folder.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::run_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -242,5 +241,4 @@ TEST_F(RunCommandTest, AFullDiskLosesNothingThatIsRecorded) {
   EXPECT_THAT(run({"run", "sweep.toml"}).out, AllOf(HasSubstr("2 recorded"), HasSubstr("2 reused")));
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::run_test

@@ -7,8 +7,7 @@
 
 #include "tests/temporary_folder.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::config_test {
 
 using testing::ElementsAre;
 using testing::EndsWith;
@@ -309,5 +308,4 @@ TEST_F(ConfigTest, RefusesFiguresOfUnknownRuns) {
   EXPECT_THAT(wrong("columns = [{run = \"a\"}, 3]"), HasSubstr("columns: expected a table"));
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::config_test

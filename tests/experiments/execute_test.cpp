@@ -9,8 +9,7 @@
 #include "methods/base/image_io.h"
 #include "tests/temporary_folder.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::execute_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -180,5 +179,4 @@ TEST(FindPictureTest, SuggestsTheNearestName) {
   }
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::execute_test

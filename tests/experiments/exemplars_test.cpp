@@ -11,8 +11,7 @@
 #include "experiments/procedural_exemplars.h"
 #include "tests/experiments/exemplar_home.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::exemplars_test {
 
 using testing::AllOf;
 using testing::ElementsAre;
@@ -235,5 +234,4 @@ TEST(ExemplarCatalogTest, ReadsThePapersExemplars) {
   }
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::exemplars_test

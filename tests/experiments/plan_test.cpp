@@ -13,8 +13,7 @@
 #include "experiments/metrics/metric.h"
 #include "tests/experiments/exemplar_home.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::plan_test {
 
 using testing::AllOf;
 using testing::Contains;
@@ -289,5 +288,4 @@ TEST(DeliveredConfigsTest, ArePlanned) {
   EXPECT_GT(configs, 0);
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::plan_test

@@ -11,8 +11,7 @@
 
 #include "methods/base/spectrum.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::procedural_exemplars_test {
 
 using Vector3cd = Eigen::Vector3cd;
 
@@ -174,5 +173,4 @@ TEST(ProceduralExemplarsTest, AnUnknownNameIsRefusedWithTheNearest) {
   EXPECT_THROW(known_mean("grass"), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::procedural_exemplars_test

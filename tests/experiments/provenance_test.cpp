@@ -11,8 +11,7 @@
 
 #include "tests/temporary_folder.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::provenance_test {
 
 using testing::HasSubstr;
 using testing::MatchesRegex;
@@ -169,5 +168,4 @@ TEST_F(BuildInfoTest, TellsTheCommitAndWhetherFilesDiffer) {
   EXPECT_EQ(value_of("git_commit", "PATH=/nowhere"), "unknown") << "git is not installed";
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::provenance_test

@@ -15,8 +15,7 @@
 #include "experiments/provenance.h"
 #include "tests/temporary_folder.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::record_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -192,5 +191,4 @@ TEST(LatestByIdTest, PrefersTheLastSuccessOverLaterFailures) {
   EXPECT_EQ((*latest[3])["reason"], "5");
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::record_test

@@ -8,8 +8,7 @@
 
 #include "experiments/provenance.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::run_spec_test {
 
 using testing::HasSubstr;
 using Json = nlohmann::ordered_json;
@@ -130,5 +129,4 @@ TEST(RunSpecTest, CommandLineIsSafeInAShell) {
             "--samples 4");
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::run_spec_test

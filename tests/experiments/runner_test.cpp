@@ -14,8 +14,7 @@
 #include "experiments/child_process.h"
 #include "tests/temporary_folder.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::runner_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -260,5 +259,4 @@ TEST_F(RunnerTest, RefusesToRunWithoutJobsOrThreads) {
   EXPECT_THROW(run(make_small_plan(1), {.threads = 0}), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::runner_test

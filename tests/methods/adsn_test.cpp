@@ -7,8 +7,7 @@
 #include "methods/base/spectrum.h"
 #include "tests/texture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::adsn_test {
 
 Domain torus(Extent size) { return {.size = size, .periodic = true}; }
 
@@ -112,5 +111,4 @@ TEST(Adsn, SampleVarianceFluctuatesWhereRpnsDoesNot) {
   EXPECT_GT(spread(find_method("adsn")), 0.03);
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::adsn_test

@@ -10,8 +10,7 @@
 #include "methods/method.h"
 #include "tests/texture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::laws_test {
 
 std::unique_ptr<Model> fit(const MethodEntry& entry, const Exemplar& exemplar) {
   return entry.analyze({exemplar}, Params(entry.params, {}), Seed{3});
@@ -270,5 +269,4 @@ TEST(Catalog, NamesTheNearestMethod) {
   }
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::laws_test

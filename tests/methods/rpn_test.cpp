@@ -8,8 +8,7 @@
 #include "methods/base/spectrum.h"
 #include "tests/texture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::rpn_test {
 
 /// First column of row ky, the mean left out.
 int kx_start(int ky) { return ky == 0 ? 1 : 0; }
@@ -101,5 +100,4 @@ TEST(Rpn, ReplacedPhaseKeepsTheModulusAndLosesTheColorCovariance) {
   EXPECT_GT(std::abs(of_wrong(0, 1) - target(0, 1)), 0.3 * target(0, 0));
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::rpn_test

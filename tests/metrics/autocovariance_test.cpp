@@ -6,8 +6,7 @@
 #include "experiments/metrics/target_law.h"
 #include "tests/metrics/metric_fixture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::autocovariance_test {
 
 /// Γ_{cd}(v) of the spot by its definition: on Z², or on a torus where all pairs of pixels v apart modulo its size
 /// count.
@@ -127,5 +126,4 @@ TEST(AutocovarianceError, OfARandomPhaseImageIsZeroAndOfItsContrastExact) {
   }
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::autocovariance_test

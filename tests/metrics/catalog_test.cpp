@@ -5,8 +5,7 @@
 
 #include "experiments/metrics/metric.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::catalog_test {
 
 TEST(MetricCatalog, NamesAndOrderAreThoseThatScriptsKnow) {
   std::vector<std::string_view> names;
@@ -42,5 +41,4 @@ TEST(MetricCatalog, AnUnknownNameIsToldWithTheNearestOne) {
   }
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::catalog_test

@@ -4,8 +4,7 @@
 
 #include "tests/metrics/metric_fixture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::color_covariance_test {
 
 constexpr Extent extent{32, 24};
 constexpr Domain domain{.size = extent, .periodic = true};
@@ -44,5 +43,4 @@ TEST(ColorCovariance, SeesContrastAndNotTheMean) {
   EXPECT_NEAR(measure("color_covariance_error", target, with(0, 0.4), domain).value, 1, 1e-3);
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::color_covariance_test

@@ -6,8 +6,7 @@
 
 #include "tests/metrics/metric_fixture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::cramer_von_mises_test {
 
 double normal_cdf(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
@@ -83,5 +82,4 @@ TEST(CramerVonMises, ScoresOneSixthForTheExactLaw) {
   }
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::cramer_von_mises_test

@@ -7,8 +7,7 @@
 
 #include "tests/metrics/metric_fixture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::discrimination_test {
 
 constexpr int count = 8;
 
@@ -124,5 +123,4 @@ TEST_F(Discrimination, MeasuringTwiceGivesTheSameBits) {
   }
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::discrimination_test

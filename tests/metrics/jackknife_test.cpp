@@ -7,8 +7,7 @@
 
 #include "tests/metrics/metric_fixture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::jackknife_test {
 
 using testing::HasSubstr;
 
@@ -89,5 +88,4 @@ TEST(Jackknife, RefusesWhatCannotBeMeasured) {
   EXPECT_THAT(message(samples), HasSubstr("sample 2 is of 4x3 pixels: expected 1x1"));
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::jackknife_test

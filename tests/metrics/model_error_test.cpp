@@ -7,8 +7,7 @@
 
 #include "tests/metrics/metric_fixture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::model_error_test {
 
 constexpr Domain anywhere{.size = {8, 8}, .periodic = true};
 
@@ -164,5 +163,4 @@ TEST(ModelError, IsAbsentForAModelWithoutClosedFormLaw) {
   EXPECT_FALSE(ot_distance(Lawless(), target, anywhere));
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::model_error_test

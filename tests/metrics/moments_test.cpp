@@ -7,8 +7,7 @@
 
 #include "tests/metrics/metric_fixture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::moments_test {
 
 constexpr Extent extent{20, 16};
 constexpr Domain domain{.size = extent, .periodic = true};
@@ -82,5 +81,4 @@ TEST(Moments, OfSamplesThatDoNotVaryAreRefused) {
                std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::moments_test

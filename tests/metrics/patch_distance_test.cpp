@@ -7,8 +7,7 @@
 
 #include "tests/metrics/metric_fixture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::patch_distance_test {
 
 double normal_cdf(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
@@ -140,5 +139,4 @@ TEST(PatchDistance, NeedsAPatch) {
   EXPECT_THROW(find_metric("patch_distance").of_samples(target, {.size = {40, 2}}, Seed{1}), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::patch_distance_test

@@ -4,8 +4,7 @@
 
 #include "tests/metrics/metric_fixture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::spectral_distance_test {
 
 TEST(LogSpectralDistance, OfARandomPhaseImageIsZeroAndOfItsContrastExact) {
   const Exemplar exemplar = smooth_exemplar({96, 80}, 3);
@@ -65,5 +64,4 @@ TEST(LogSpectralDistance, KnowsTheEffectOfTheWindow) {
   }
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::spectral_distance_test

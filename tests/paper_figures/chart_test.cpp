@@ -9,8 +9,7 @@
 #include "paper_figures/gnuplot.h"
 #include "tests/paper_figures/fixture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::chart_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -121,5 +120,4 @@ TEST(Gnuplot, RefusesAnSvgThatLacksPoints) {
   EXPECT_THROW(annotated_svg("<svg></svg>", {{"id", "text"}}), std::runtime_error);
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::chart_test

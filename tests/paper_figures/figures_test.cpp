@@ -4,8 +4,7 @@
 
 #include "tests/paper_figures/fixture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::figures_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -92,5 +91,4 @@ TEST_F(FiguresTest, SaysWhenNoExemplarOfAFigureIsHere) {
   EXPECT_THAT(make_figures(config_, plan_, results_).figures[0].refused, HasSubstr("no runs"));
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::figures_test

@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-namespace textonbench {
-namespace {
+namespace textonbench::number_format_test {
 
 TEST(NumberFormat, KeepsFourDigitsOfANumberWithoutError) {
   EXPECT_EQ(format_number(0), "0");
@@ -41,5 +40,4 @@ TEST(NumberFormat, WritesExactNumbersThatReadBack) {
   EXPECT_EQ(format_size(640, 480), "640 × 480");
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::number_format_test

@@ -6,8 +6,7 @@
 #include "paper_figures/panel_image.h"
 #include "tests/paper_figures/fixture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::panel_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -142,5 +141,4 @@ TEST_F(PanelTest, ShowsTexturesByTheirMiddleAndSpectraWhole) {
   EXPECT_EQ(part.at(0, 0, 0), 1.0F);
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::panel_test

@@ -9,8 +9,7 @@
 #include "paper_figures/report_context.h"
 #include "tests/paper_figures/fixture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::report_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -198,5 +197,4 @@ TEST(Base64, EncodesTheExamplesOfRfc4648) {
   EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::report_test

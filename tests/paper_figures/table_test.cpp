@@ -7,8 +7,7 @@
 #include "paper_figures/figures.h"
 #include "tests/paper_figures/fixture.h"
 
-namespace textonbench {
-namespace {
+namespace textonbench::table_test {
 
 using testing::HasSubstr;
 using testing::Not;
@@ -91,5 +90,4 @@ TEST_F(TableTest, LeavesOutNumbersThatAreNotFinite) {
   EXPECT_THAT(read_file(figure_file("numbers.html")), HasSubstr("–"));
 }
 
-}  // namespace
-}  // namespace textonbench
+}  // namespace textonbench::table_test
