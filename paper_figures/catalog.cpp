@@ -6,16 +6,18 @@
 
 #include "paper_figures/chart.h"
 #include "paper_figures/figure_kind.h"
+#include "paper_figures/front.h"
 #include "paper_figures/panel.h"
 #include "paper_figures/table.h"
 
 namespace textonbench {
 namespace {
 
-constexpr std::array<FigureKind, 3> kinds{{
+constexpr std::array<FigureKind, 4> kinds{{
     {"panel", check_panel, write_panel, panel_html},
     {"table", check_table, write_table, table_html},
     {"chart", check_chart, write_chart, chart_html},
+    {"front", check_front, write_front, front_html},
 }};
 
 void require_known(const FigureTable& table, const std::string& key, std::span<const std::string_view> known) {

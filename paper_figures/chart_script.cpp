@@ -3,24 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
+#include "paper_figures/chart_style.h"
 #include "paper_figures/gnuplot.h"
-#include "paper_figures/number_format.h"
 
 namespace textonbench {
 namespace {
 
-/// Okabe and Ito's palette, distinguishable by color-blind readers; shapes tell series apart in black and white.
-constexpr std::array<const char*, 6> colors{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
-constexpr std::array<int, 6> shapes{7, 5, 9, 13, 11, 15};
-constexpr int width = 760;
 constexpr int bottom = 62;
-constexpr int key_line = 22;
-constexpr int character_width = 8;
-constexpr double pdf_centimeters = 16;
+constexpr double symbol_size = 0.75;
 constexpr const char* floor_style = "lw 3 lc rgb \"#a9aeb6\"";
 
 struct Range {
@@ -65,60 +58,27 @@ double position(const ChartContents& chart, std::size_t row, std::size_t series)
   return static_cast<double>(row) + 1 + step * (static_cast<double>(series) - (count - 1) / 2);
 }
 
-std::string axis_title(const MetricEntry& metric) {
-  std::string text(metric.title);
-  if (const std::string unit = unit_of(metric); !unit.empty()) text += fmt::format(" [{}]", unit);
-  if (const std::string direction = direction_of(metric); !direction.empty()) text += fmt::format(" ({})", direction);
-  return text;
-}
-
 bool has_floor(const ChartContents& chart) {
   return std::ranges::any_of(chart.points, [](const ChartPoint& point) { return point.number.floor.has_value(); });
 }
 
-std::size_t characters(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
-const char* color_of(std::size_t series) { return colors.at(series % colors.size()); }
-
-std::string symbol_of(std::size_t series) {
-  return fmt::format("pt {} ps 0.75 lc rgb \"{}\"", shapes.at(series % shapes.size()), color_of(series));
-}
-
-/// Places in SVG pixels: text is measured by its number of characters, so the layout is the same everywhere.
+/// Places in SVG pixels.
 struct Layout {
-  struct KeyItem {
-    std::size_t series;  ///< chart.series.size() stands for the floor
-    std::string text;
-    int x, line;
-  };
   int left, top, height;
-  std::vector<KeyItem> key;
+  std::vector<KeyItem> key;  ///< indexed by series; chart.series.size() stands for the floor
 };
 
 Layout lay_out(const ChartContents& chart) {
   std::size_t longest = 0;
-  for (const std::string& row : chart.rows) longest = std::max(longest, characters(row));
-  Layout layout{
-      .left = std::min(24 + character_width * static_cast<int>(longest), width / 2), .top = 0, .height = 0, .key = {}};
-  int x = layout.left, line = 0;
-  const auto add = [&](std::size_t series, const std::string& text) {
-    const int item = 40 + character_width * static_cast<int>(characters(text));
-    if (x > layout.left && x + item > width) {
-      x = layout.left;
-      ++line;
-    }
-    layout.key.push_back({series, text, x, line});
-    x += item;
-  };
-  for (std::size_t series = 0; series < chart.series.size(); ++series) add(series, chart.series[series]);
-  if (has_floor(chart)) add(chart.series.size(), "floor (exact Gaussian samples)");
-  layout.top = 20 + key_line * (line + 1);
+  for (const std::string& row : chart.rows) longest = std::max(longest, count_characters(row));
+  const int left = std::min(24 + character_width * static_cast<int>(longest), chart_width / 2);
+  std::vector<std::string> texts = chart.series;
+  if (has_floor(chart)) texts.emplace_back("floor (exact Gaussian samples)");
+  std::vector<KeyItem> key = lay_out_key(left, texts);
+  const int top = key_height(key);
   const int row_height = std::max(26, 13 * static_cast<int>(chart.series.size()) + 12);
-  layout.height = layout.top + row_height * static_cast<int>(chart.rows.size()) + bottom;
-  return layout;
+  const int height = top + row_height * static_cast<int>(chart.rows.size()) + bottom;
+  return {left, top, height, std::move(key)};
 }
 
 /// One block a series (value, place, ends of the error bar, label), then one of floors (value, place).
@@ -144,24 +104,13 @@ std::string data_blocks(const ChartContents& chart) {
   return text + "EOD\n";
 }
 
-/// One tick a decade.
-std::string decade_tics(const Range& range) {
-  std::vector<std::string> tics;
-  for (int e = static_cast<int>(std::ceil(std::log10(range.low))); e <= std::floor(std::log10(range.high)); ++e) {
-    const bool plain = e >= -3 && e <= 3;
-    tics.push_back(fmt::format("'{}' 1e{}", plain ? format_exact(std::pow(10.0, e)) : format_power_of_ten(e), e));
-  }
-  // Within a decade or two, gnuplot's own ticks say more.
-  return tics.size() < 3 ? "" : fmt::format("set xtics ({})\n", fmt::join(tics, ", "));
-}
-
 std::string axes(const ChartContents& chart) {
   const Range range = axis_range(chart);
   std::string text = fmt::format("set xrange [{}:{}]\nset yrange [{}:0.5]\n", range.low, range.high,
                                  static_cast<double>(chart.rows.size()) + 0.5);
   text += "set border 1 lc rgb \"#8a8f98\" lw 1\nset tics scale 0.4 nomirror textcolor rgb \"black\"\n";
   text += "set grid xtics lt 1 lw 1 lc rgb \"#e3e5e8\"\nset xtics out offset 0,0.2\n";
-  if (chart.logarithmic) text += "set logscale x\nset format x \"%g\"\n" + decade_tics(range);
+  if (chart.logarithmic) text += "set logscale x\nset format x \"%g\"\n" + decade_tics('x', range.low, range.high);
   text += fmt::format("set xlabel {} offset 0,0.2\n", gnuplot_quoted(axis_title(*chart.metric)));
   text += "set ytics scale 0 (";
   for (std::size_t row = 0; row < chart.rows.size(); ++row) {
@@ -179,22 +128,19 @@ std::string axes(const ChartContents& chart) {
 std::string labels(const ChartContents& chart, const Layout& layout) {
   std::string text;
   for (const ChartGap& gap : chart.gaps) {
-    text += fmt::format("set label {} at graph 0.01, first {:.4f} textcolor rgb \"{}\"\n",
-                        gnuplot_quoted("✕ " + gap.mark), position(chart, gap.row, gap.series), color_of(gap.series));
+    text +=
+        fmt::format("set label {} at graph 0.01, first {:.4f} textcolor rgb \"{}\"\n", gnuplot_quoted("✕ " + gap.mark),
+                    position(chart, gap.row, gap.series), series_color(gap.series));
   }
-  for (const Layout::KeyItem& item : layout.key) {
-    const double x = (item.x + 6.0) / width;
-    const double y = 1 - (16.0 + key_line * item.line) / layout.height;
-    if (item.series == chart.series.size()) {
-      const double half = 6.0 / layout.height;
-      text +=
-          fmt::format("set arrow from screen {0:.4f}, screen {1:.4f} to screen {0:.4f}, screen {2:.4f} nohead {3}\n", x,
-                      y - half, y + half, floor_style);
-    } else {
-      text += fmt::format("set label '' at screen {:.4f}, screen {:.4f} point {}\n", x, y, symbol_of(item.series));
-    }
-    text += fmt::format("set label {} at screen {:.4f}, screen {:.4f} textcolor rgb \"black\"\n",
-                        gnuplot_quoted(item.text), x + 10.0 / width, y);
+  for (const KeyItem& item : layout.key) {
+    const bool is_floor = item.index == chart.series.size();
+    text += key_label(item, is_floor ? "" : series_symbol(item.index, symbol_size), layout.height);
+    if (!is_floor) continue;
+    const double x = (item.x + 6.0) / chart_width;
+    const double y = 1 - (16.0 + key_line_height * item.line) / layout.height;
+    const double half = 6.0 / layout.height;
+    text += fmt::format("set arrow from screen {0:.4f}, screen {1:.4f} to screen {0:.4f}, screen {2:.4f} nohead {3}\n",
+                        x, y - half, y + half, floor_style);
   }
   return text;
 }
@@ -207,9 +153,9 @@ std::string plot_command(const ChartContents& chart) {
   for (std::size_t series = 0; series < chart.series.size(); ++series) {
     if (std::ranges::none_of(chart.points, [&](const ChartPoint& point) { return point.series == series; })) continue;
     parts.push_back(fmt::format("$series{} using 1:2:3:4 with xerrorbars pt 0 lw 1.5 lc rgb \"{}\" notitle", series,
-                                color_of(series)));
-    parts.push_back(
-        fmt::format("$series{} using 1:2:5 with labels hypertext point {} notitle", series, symbol_of(series)));
+                                series_color(series)));
+    parts.push_back(fmt::format("$series{} using 1:2:5 with labels hypertext point {} notitle", series,
+                                series_symbol(series, symbol_size)));
   }
   // A plot of nothing still draws the axes and the labels of the gaps.
   if (parts.empty()) parts.emplace_back("NaN notitle");
@@ -220,18 +166,10 @@ std::string plot_command(const ChartContents& chart) {
 
 std::string chart_script(const ChartContents& chart, const std::string& name) {
   const Layout layout = lay_out(chart);
-  const auto from_bottom = [&](int pixels) { return static_cast<double>(pixels) / layout.height; };
   std::string text = "set encoding utf8\nset errorbars small\nunset key\n";
-  text += fmt::format("set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\n",
-                      static_cast<double>(layout.left) / width, 1 - 20.0 / width);
-  text += fmt::format("set bmargin at screen {:.4f}\nset tmargin at screen {:.4f}\n", from_bottom(bottom),
-                      1 - from_bottom(layout.top));
+  text += margins(layout.left, 20, bottom, layout.top, layout.height);
   text += data_blocks(chart) + axes(chart) + labels(chart, layout);
-  text += fmt::format("set terminal svg noenhanced size {},{} dynamic font \"DejaVu Sans,13\"\n", width, layout.height);
-  text += fmt::format("set output {}\n{}", gnuplot_quoted(name + ".svg"), plot_command(chart));
-  text += fmt::format("set terminal pdfcairo noenhanced size {}cm,{:.2f}cm font \"DejaVu Sans,8.5\"\n", pdf_centimeters,
-                      pdf_centimeters * layout.height / width);
-  text += fmt::format("set output {}\nreplot\nunset output\n", gnuplot_quoted(name + ".pdf"));
+  text += plot_to_files(name, layout.height, plot_command(chart));
   return text;
 }
 
