@@ -10,6 +10,7 @@
 #include "paper_figures/figures.h"
 #include "paper_figures/files.h"
 #include "paper_figures/report_context.h"
+#include "paper_figures/report_history.h"
 #include "paper_figures/report_runs.h"
 #include "paper_figures/templates.h"
 
@@ -110,10 +111,11 @@ Json figures_of(const ReportConfig& config, const std::vector<Record>& records, 
   return views;
 }
 
-Json sections_of(bool has_speed) {
+Json sections_of(bool has_speed, bool has_history) {
   Json sections = Json::array();
   if (has_speed) sections.push_back({{"anchor", "speed"}, {"title", "Speed"}});
   sections.push_back({{"anchor", "problems"}, {"title", "Failures, refusals and gaps"}});
+  if (has_history) sections.push_back({{"anchor", "history"}, {"title", "History"}});
   sections.push_back({{"anchor", "exemplars"}, {"title", "Exemplars"}});
   sections.push_back({{"anchor", "environment"}, {"title", "Environment"}});
   sections.push_back({{"anchor", "records"}, {"title", "Records"}});
@@ -140,6 +142,7 @@ std::filesystem::path write_report(const std::vector<ReportConfig>& configs, con
   }
   const std::filesystem::path benchmarks = results.path() / "benchmarks.json";
   const std::string speed = std::filesystem::exists(benchmarks) ? speed_html(read_file(benchmarks)) : "";
+  const std::string history = history_html(results.path() / "baseline" / "history.jsonl");
   const std::string exemplars_section = exemplars_html(runs, exemplars, pictures);
   const int side = pictures.fitting_side();
   const std::string page = render_template("report", {{"title", report_title},
@@ -149,9 +152,10 @@ std::filesystem::path write_report(const std::vector<ReportConfig>& configs, con
                                                       {"picture_note", picture_note(side)},
                                                       {"tiles", tiles_of(configs, runs)},
                                                       {"configs", std::move(views)},
-                                                      {"sections", sections_of(!speed.empty())},
+                                                      {"sections", sections_of(!speed.empty(), !history.empty())},
                                                       {"speed", speed},
                                                       {"problems", problems_html(runs, configs, read.bad_lines)},
+                                                      {"history", history},
                                                       {"exemplars", exemplars_section},
                                                       {"environment", environment_html(runs)},
                                                       {"records", records_html(runs, pictures)}});
