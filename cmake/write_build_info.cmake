@@ -31,6 +31,7 @@ string(SUBSTRING ${code_version} 0 16 code_version)
 # A source tree unpacked inside somebody else's checkout has no .git of its own and must not borrow that commit.
 set(git_commit unknown)
 set(git_state unknown)
+set(diff "")
 find_program(GIT git)
 if(GIT AND EXISTS ${SOURCE}/.git)
   execute_process(
@@ -49,9 +50,30 @@ if(GIT AND EXISTS ${SOURCE}/.git)
       set(git_state clean)
     elseif(NOT failed)
       set(git_state dirty)
+      execute_process(
+        COMMAND ${GIT} -C ${SOURCE} --no-optional-locks diff --no-color --no-ext-diff HEAD
+        OUTPUT_VARIABLE diff
+        ERROR_QUIET)
+      # Sources that git does not know yet are compiled all the same.
+      execute_process(
+        COMMAND ${GIT} -C ${SOURCE} ls-files --others --exclude-standard -- cmake configs experiments methods paper_figures
+        OUTPUT_VARIABLE untracked
+        OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+      string(REPLACE "\n" ";" untracked "${untracked}")
+      foreach(file IN LISTS untracked)
+        execute_process(
+          COMMAND ${GIT} -C ${SOURCE} diff --no-color --no-ext-diff --no-index /dev/null ${file}
+          OUTPUT_VARIABLE new_file
+          ERROR_QUIET)
+        string(APPEND diff "${new_file}")
+      endforeach()
     endif()
   endif()
 endif()
+
+# The text of a raw string literal must not contain the literal's own end.
+string(SHA256 delimiter "${diff}")
+string(SUBSTRING ${delimiter} 0 16 delimiter)
 
 set(text
     "// Written by cmake/write_build_info.cmake at each build.
@@ -66,6 +88,7 @@ inline constexpr const char* git_state = \"${git_state}\";
 inline constexpr const char* compiler = \"${COMPILER}\";
 inline constexpr const char* flags = R\"flags(${FLAGS})flags\";
 inline constexpr const char* build_type = \"${BUILD_TYPE}\";
+inline constexpr const char* source_diff = R\"${delimiter}(${diff})${delimiter}\";
 
 }  // namespace textonbench::build_info
 ")

@@ -16,6 +16,7 @@ namespace {
 constexpr int largest_side = 65536;
 constexpr std::int64_t largest_area = std::int64_t{1} << 28;
 constexpr int most_samples = 1'000'000;
+constexpr std::int64_t largest_memory_limit_mb = std::int64_t{1} << 30;
 constexpr double longest_timeout_seconds = 7 * 24 * 3600.0;
 
 Extent read_extent(const TomlValue& value) {
@@ -83,14 +84,21 @@ void read_layer(TableReader& layer, RunsTable& runs) {
   read("timeout_seconds", [&](const TomlValue& v) {
     runs.timeout_seconds = read_positive(v, "timeout_seconds", longest_timeout_seconds);
   });
+  read("memory_limit_mb", [&](const TomlValue& v) {
+    runs.memory_limit_mb = static_cast<int>(read_integer(v, "memory_limit_mb", 64, largest_memory_limit_mb));
+  });
   read("metrics", [&](const TomlValue& v) { runs.metrics = read_names(v, "metrics"); });
   read("pictures", [&](const TomlValue& v) { runs.pictures = read_names(v, "pictures"); });
   read("combine", [&](const TomlValue& v) {
     const std::string combine = read_text(v, "combine");
-    if (combine != "grid" && combine != "zip") {
-      throw ConfigError(v.place, fmt::format("combine: expected \"grid\" or \"zip\", found \"{}\"", combine));
+    const std::map<std::string, Combine> known{
+        {"grid", Combine::grid}, {"zip", Combine::zip}, {"ablate", Combine::ablate}};
+    const auto found = known.find(combine);
+    if (found == known.end()) {
+      throw ConfigError(v.place,
+                        fmt::format("combine: expected \"grid\", \"zip\" or \"ablate\", found \"{}\"", combine));
     }
-    runs.zip = combine == "zip";
+    runs.combine = found->second;
   });
   read("params", [&](const TomlValue& v) {
     const TableReader is_a_table(v, "params");

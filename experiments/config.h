@@ -16,6 +16,13 @@ namespace textonbench {
 
 enum class Profile { quick, full };
 
+/// How the lists of a [[runs]] table make its runs.
+enum class Combine {
+  grid,   ///< every combination
+  zip,    ///< all lists longer than one advance together
+  ablate  ///< of the parameters, the first values, then one parameter at a time at its others; the rest as a grid
+};
+
 /// Where a value stands in its file: "configs/x.toml:12:5".
 struct SourcePlace {
   std::string file;
@@ -33,7 +40,7 @@ class ConfigError : public std::invalid_argument {
 struct RunsTable {
   SourcePlace place;
   std::string label;
-  bool zip = false;  ///< combine = "zip": all lists longer than one advance together; otherwise the full grid
+  Combine combine = Combine::grid;
   std::vector<std::string> methods;
   std::vector<std::string> exemplars;  ///< names; "@tag" stands for every exemplar with that tag
   std::vector<std::uint64_t> seeds{1};
@@ -41,6 +48,7 @@ struct RunsTable {
   std::vector<bool> periodic{true};
   int samples = 1;
   double timeout_seconds = 300;
+  int memory_limit_mb = 0;  ///< of each run; 0: a share of the machine's memory
   std::vector<std::string> metrics;
   std::vector<std::string> pictures;
   std::map<std::string, std::vector<ParamValue>> params;

@@ -29,7 +29,7 @@ class ExemplarChooser {
       at_place(table, fmt::format("exemplars[{}]", i), [&] {
         for (const std::string& name : expand_tag(table.exemplars[i])) {
           const ChosenExemplar* exemplar = look_up(name);
-          if (table.zip || std::ranges::find(chosen, exemplar) == chosen.end()) {
+          if (table.combine == Combine::zip || std::ranges::find(chosen, exemplar) == chosen.end()) {
             chosen.push_back(exemplar);
           }
         }

@@ -1,13 +1,19 @@
 #include "experiments/progress.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 
 namespace textonbench {
 namespace {
+
+constexpr const char* erase_line = "\r\x1b[K";
+
+}  // namespace
 
 std::string readable_duration(double seconds) {
   const long whole = std::lround(seconds);
@@ -16,43 +22,57 @@ std::string readable_duration(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
-constexpr const char* erase_line = "\r\x1b[K";
-
-}  // namespace
-
-Progress::Progress(std::size_t total, bool show)
-    : total_(total), show_(show && total > 0), terminal_(isatty(STDERR_FILENO) == 1) {
+Progress::Progress(std::size_t total, bool show, const std::filesystem::path& log)
+    : total_(total), show_(show && total > 0), terminal_(isatty(STDERR_FILENO) == 1), log_(log, std::ios::app) {
+  if (!log_) fmt::print(stderr, "textonbench: warning: {}: cannot be written\n", log.string());
+  write_log(fmt::format("start: {} runs to make", total_));
   if (show_ && terminal_) print();
 }
 
 Progress::~Progress() {
   if (show_ && terminal_) fmt::print(stderr, "{}", erase_line);
+  write_log(fmt::format("{}: {} in {:.1f} s", done_ < total_ ? "stopped" : "end", state(), seconds()));
 }
 
 double Progress::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
 void Progress::advance(const std::string& failure) {
+  constexpr auto plain_pause = std::chrono::milliseconds(5000);
   ++done_;
-  if (!failure.empty()) ++failed_;
-  if (!show_) return;
-  if (!failure.empty()) fmt::print(stderr, "{}failed: {}\n", terminal_ ? erase_line : "", failure);
-  const auto pause = terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000);
-  if (Clock::now() - printed_ >= pause) print();
+  if (!failure.empty()) {
+    ++failed_;
+    write_log("failed: " + failure);
+    if (show_) fmt::print(stderr, "{}failed: {}\n", terminal_ ? erase_line : "", failure);
+  }
+  const Clock::time_point now = Clock::now();
+  if (now - logged_ >= plain_pause) {
+    logged_ = now;
+    write_log(state());
+  }
+  if (show_ && now - printed_ >= (terminal_ ? std::chrono::milliseconds(100) : plain_pause)) print();
+}
+
+std::string Progress::state() const {
+  std::string line = fmt::format("{}/{} runs", done_, total_);
+  if (failed_ > 0) line += fmt::format(", {} failed", failed_);
+  if (done_ > 0 && done_ < total_) {
+    const double left = seconds() / static_cast<double>(done_) * static_cast<double>(total_ - done_);
+    line += fmt::format(", about {} left", readable_duration(left));
+  }
+  return line;
 }
 
 void Progress::print() {
   printed_ = Clock::now();
-  std::string line = fmt::format("{}/{} runs", done_, total_);
-  if (failed_ > 0) line += fmt::format(", {} failed", failed_);
-  if (done_ > 0) {
-    const double left = seconds() / static_cast<double>(done_) * static_cast<double>(total_ - done_);
-    line += fmt::format(", about {} left", readable_duration(left));
-  }
   if (terminal_) {
-    fmt::print(stderr, "{}{}", erase_line, line);
+    fmt::print(stderr, "{}{}", erase_line, state());
   } else {
-    fmt::print(stderr, "{}\n", line);
+    fmt::print(stderr, "{}\n", state());
   }
+}
+
+void Progress::write_log(const std::string& text) {
+  log_ << fmt::format("{:%Y-%m-%dT%H:%M:%SZ} [{}] {}\n", fmt::gmtime(std::time(nullptr)), getpid(), text) << std::flush;
 }
 
 }  // namespace textonbench

@@ -1,31 +1,43 @@
-// How far a long piece of work is, on standard error.
+// How far a long piece of work is: on standard error, and in a log file.
 #pragma once
 
 #include <chrono>
 #include <cstddef>
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 namespace textonbench {
 
-/// On a terminal one line that is rewritten; elsewhere (a log) a plain line every few seconds.
+/// "40 s", "12 min", "3.5 h".
+std::string readable_duration(double seconds);
+
+/// On a terminal one line that is rewritten; elsewhere, and in the log, a plain line every few seconds. Lines of the
+/// log begin with the time and the process, since several may share it.
 class Progress {
  public:
-  Progress(std::size_t total, bool show);
+  /// Appends to `log` from then on. A log that cannot be written is told once and is no reason to stop.
+  Progress(std::size_t total, bool show, const std::filesystem::path& log);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress();
 
   /// One more is done. `failure` is told at once, on a line of its own, when it is not empty.
   void advance(const std::string& failure);
+  /// Of a clock that nobody sets.
   double seconds() const;
 
  private:
-  void print();
-
   using Clock = std::chrono::steady_clock;
+
+  std::string state() const;
+  void print();
+  void write_log(const std::string& text);
+
   std::size_t total_, done_ = 0, failed_ = 0;
   bool show_, terminal_;
-  Clock::time_point start_ = Clock::now(), printed_ = start_;
+  std::ofstream log_;
+  Clock::time_point start_ = Clock::now(), printed_ = start_, logged_ = start_;
 };
 
 }  // namespace textonbench

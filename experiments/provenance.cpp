@@ -47,19 +47,32 @@ unsigned core_count() {
   return cores.empty() ? std::thread::hardware_concurrency() : static_cast<unsigned>(cores.size());
 }
 
+/// What the dispatch of target_clones picks among the targets that methods/ is compiled for.
+const char* simd_target() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f")) return "avx512f";
+  if (__builtin_cpu_supports("avx2")) return "avx2";
+#endif
+  return "default";
+}
+
 /// What cannot change while the program runs.
 nlohmann::ordered_json constant_part() {
   const std::string git_state = build_info::git_state;
   nlohmann::ordered_json dirty = git_state == "dirty";
   if (git_state == "unknown") dirty = "unknown";
+  nlohmann::ordered_json diff;
+  if (const std::string_view text = source_diff(); !text.empty()) diff = sha256(text);
   return {{"version", build_info::version},
           {"code_version", build_info::code_version},
           {"git_commit", build_info::git_commit},
           {"git_dirty", dirty},
+          {"git_diff", diff},
           {"compiler", build_info::compiler},
           {"flags", build_info::flags},
           {"build_type", build_info::build_type},
           {"cpu", value_in_file("/proc/cpuinfo", "model name", ':')},
+          {"simd", simd_target()},
           {"cores", core_count()},
           {"threads", 0},
           {"os", value_in_file("/etc/os-release", "PRETTY_NAME", '=')},
@@ -108,6 +121,8 @@ nlohmann::ordered_json provenance() {
 }
 
 const char* code_version() { return build_info::code_version; }
+
+const char* source_diff() { return build_info::source_diff; }
 
 std::string sha256(std::string_view bytes) {
   Sha256 hash;

@@ -7,13 +7,18 @@
 
 namespace textonbench {
 
-/// Keys: version, code_version, git_commit ("unknown" outside a checkout), git_dirty, compiler, flags, build_type, cpu,
-/// cores, threads, os, libraries {eigen, fftw, openimageio, tbb, …}, fft_plans.
+/// Keys: version, code_version, git_commit ("unknown" outside a checkout), git_dirty, git_diff (SHA-256 of
+/// source_diff(), null without one), compiler, flags, build_type, cpu, simd (the instructions that vectorized kernels
+/// are dispatched to: "avx512f", "avx2" or "default"), cores, threads, os, libraries {eigen, fftw, openimageio, tbb,
+/// …}, fft_plans.
 nlohmann::ordered_json provenance();
 
 /// 16 hexadecimal digits: SHA-256 of the sources below methods/ and of what experiments/ measures with, taken at build
 /// time.
 const char* code_version();
+
+/// What the sources that this program was built from had beyond their commit, as a patch; empty when nothing.
+const char* source_diff();
 
 /// Lower-case hexadecimal SHA-256.
 std::string sha256(std::string_view bytes);

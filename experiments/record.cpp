@@ -61,8 +61,11 @@ int write_all(int descriptor, std::string_view bytes) {
   return ::fsync(descriptor) == 0 ? 0 : errno;
 }
 
-/// Why a line is no record, or nothing.
-std::optional<std::string> defect(const Record& json) {
+bool succeeded(const Record& record) { return record["status"] != "failed"; }
+
+}  // namespace
+
+std::optional<std::string> record_defect(const Record& json) {
   if (json.is_discarded()) return "not JSON (cut short?)";
   if (!json.is_object()) return "not a JSON object";
   if (!json.contains("schema") || json["schema"] != 1) return "expected \"schema\": 1";
@@ -71,10 +74,6 @@ std::optional<std::string> defect(const Record& json) {
   }
   return std::nullopt;
 }
-
-bool succeeded(const Record& record) { return record["status"] != "failed"; }
-
-}  // namespace
 
 ResultsFolder::ResultsFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::error_code error;
@@ -86,23 +85,28 @@ ResultsFolder::ResultsFolder(std::filesystem::path folder) : folder_(std::move(f
   if (::access(folder_.c_str(), W_OK | X_OK) != 0) fail(folder_, "the results folder cannot be written", errno);
 }
 
-void ResultsFolder::append(const Record& record) const {
+void ResultsFolder::append(const Record& record) const { append_all(std::vector<Record>{record}); }
+
+void ResultsFolder::append_all(const std::vector<Record>& records) const {
+  if (records.empty()) return;
   const std::filesystem::path path = folder_ / "records.jsonl";
   const LockedFile file(path, O_RDWR | O_APPEND | O_CREAT, LOCK_EX);
   const off_t size = file.size();
   // A line that a crash cut short is ended first, so that it cannot swallow this record.
   char last = '\n';
   if (size > 0 && ::pread(file.descriptor(), &last, 1, size - 1) != 1) fail(path, "cannot be read", errno);
-  // A reason may quote what a crashed child printed, which need not be UTF-8.
-  const std::string text = record.dump(-1, ' ', false, Record::error_handler_t::replace);
-  const int error = write_all(file.descriptor(), (last == '\n' ? "" : "\n") + text + "\n");
+  std::string text = last == '\n' ? "" : "\n";
+  for (const Record& record : records) {
+    // A reason may quote what a crashed child printed, which need not be UTF-8.
+    text += record.dump(-1, ' ', false, Record::error_handler_t::replace) + "\n";
+  }
+  const int error = write_all(file.descriptor(), text);
   if (error == 0) return;
   if (::ftruncate(file.descriptor(), size) != 0) fail(path, "cannot be restored after a failed append", errno);
   fail(path, "a record cannot be appended (earlier records are kept)", error);
 }
 
-ReadRecords ResultsFolder::read() const {
-  const std::filesystem::path path = folder_ / "records.jsonl";
+ReadRecords read_records(const std::filesystem::path& path) {
   ReadRecords result;
   if (!std::filesystem::exists(path)) return result;
   const LockedFile lock(path, O_RDONLY, LOCK_SH);
@@ -111,7 +115,7 @@ ReadRecords ResultsFolder::read() const {
   for (std::string line; std::getline(in, line);) {
     ++number;
     Record json = Record::parse(line, nullptr, /*allow_exceptions=*/false);
-    if (std::optional<std::string> reason = defect(json)) {
+    if (std::optional<std::string> reason = record_defect(json)) {
       result.bad_lines.push_back({number, *std::move(reason)});
     } else {
       result.records.push_back(std::move(json));
@@ -131,6 +135,21 @@ std::string ResultsFolder::keep_picture(const std::filesystem::path& file) const
         fmt::format("{}: the picture cannot be kept: {}", (folder_ / name).string(), error.message()));
   }
   return name;
+}
+
+void ResultsFolder::keep_text(const std::filesystem::path& name, const std::string& text) const {
+  const std::filesystem::path file = folder_ / name;
+  if (std::filesystem::exists(file)) return;
+  const std::filesystem::path draft =
+      file.parent_path() / fmt::format(".draft_{}_{}", ::getpid(), file.filename().string());
+  std::error_code error;
+  std::filesystem::create_directories(file.parent_path(), error);
+  const bool written = !error && static_cast<bool>(std::ofstream(draft, std::ios::binary) << text << std::flush);
+  if (written) std::filesystem::rename(draft, file, error);
+  if (written && !error) return;
+  std::error_code ignored;
+  std::filesystem::remove(draft, ignored);
+  throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
 }
 
 std::vector<std::optional<Record>> latest_by_id(const std::vector<Record>& records,

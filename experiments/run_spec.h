@@ -24,15 +24,19 @@ struct RunSpec {
   int samples = 1;
   std::vector<std::string> metrics;   ///< catalogue names, sorted
   std::vector<std::string> pictures;  ///< names of pictures to keep, sorted
-  double timeout_seconds = 300;       ///< not part of the identity
+  // Not part of the identity: what a run may take does not change what it computes.
+  double timeout_seconds = 300;
+  int memory_limit_mb = 0;  ///< 0: a share of the machine's memory
 };
 
-/// JSON with a fixed key order; `timeout_seconds` is left out.
+/// JSON with a fixed key order; the limits are left out.
 nlohmann::ordered_json to_json(const RunSpec& spec);
 /// Throws std::invalid_argument naming the key that is missing or wrong.
 RunSpec run_spec_from_json(const nlohmann::ordered_json& json);
 
 /// 16 hexadecimal digits: SHA-256 of to_json(spec) and of code_version(). Two runs with the same id compute the same.
+/// The pictures to keep are part of it, because a record without them cannot stand for one with them; the label of its
+/// table, the order of the plan, threads, jobs and limits are not.
 std::string run_id(const RunSpec& spec);
 
 /// The command that repeats the run by hand: "textonbench measure rpn mamurk_a_1 -p phase=added --seed 1 --samples 8

@@ -1,5 +1,6 @@
 #include "experiments/runner.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <oneapi/tbb/global_control.h>
 #include <poll.h>
@@ -9,13 +10,17 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <ctime>
 #include <deque>
 #include <list>
+#include <new>
 #include <stdexcept>
 #include <system_error>
 
 #include "experiments/child_process.h"
 #include "experiments/execute.h"
+#include "experiments/folder_lock.h"
+#include "experiments/history.h"
 #include "experiments/progress.h"
 #include "experiments/provenance.h"
 
@@ -63,26 +68,55 @@ std::string work(const RunSpec& spec, const ExemplarCatalog& exemplars, const Re
   Record record;
   try {
     record = execute(spec, exemplars.find(spec.exemplar), &results);
+  } catch (const std::bad_alloc&) {
+    throw;  // there may be no memory for a record
   } catch (const std::exception& error) {
     record = unsuccessful_record(spec, "failed", error.what());
   }
   return record.dump(-1, ' ', false, Record::error_handler_t::replace);
 }
 
-struct Running {
-  Running(const PlannedRun& planned, const ExemplarCatalog& exemplars, const ResultsFolder& results, int threads)
-      : run(planned),
-        child([&] { return work(planned.spec, exemplars, results, threads); },
-              results.path() / "logs" / (planned.id + ".stderr"), planned.spec.timeout_seconds) {}
+/// Three quarters of the machine's memory, shared by the children.
+std::int64_t memory_share(int jobs) {
+  return std::int64_t{sysconf(_SC_PHYS_PAGES)} * sysconf(_SC_PAGESIZE) / 4 * 3 / jobs;
+}
 
+class Running {
+ public:
+  Running(const PlannedRun& planned, const ExemplarCatalog& exemplars, const ResultsFolder& results,
+          const RunOptions& options)
+      : run_(planned),
+        results_(results),
+        child_([&] { return work(planned.spec, exemplars, results, options.threads); },
+               results.path() / "logs" / fmt::format(".draft_{}_{}.stderr", getpid(), planned.id),
+               {.seconds = planned.spec.timeout_seconds,
+                .memory_bytes = planned.spec.memory_limit_mb > 0 ? std::int64_t{planned.spec.memory_limit_mb} << 20
+                                                                 : memory_share(options.jobs)}) {}
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+  ~Running() { std::filesystem::remove(child_.log(), ignored_); }
+
+  ChildProcess& child() { return child_; }
+  const ChildProcess& child() const { return child_; }
+
+  /// Of the child that has ended. What a failed one printed stays in the folder, that of a success does not.
   Record record() const {
-    if (!child.failure().empty()) return unsuccessful_record(run.spec, "failed", child.failure());
-    Record sent = Record::parse(child.output(), nullptr, /*allow_exceptions=*/false);
-    return sent.is_object() ? sent : unsuccessful_record(run.spec, "failed", "ended without a result");
+    Record record = record_of(run_, child_);
+    const std::string log = "logs/" + run_.id + ".stderr";
+    if (record["status"] != "failed") {
+      std::filesystem::remove(results_.path() / log, ignored_);
+    } else if (std::filesystem::exists(child_.log())) {
+      std::filesystem::rename(child_.log(), results_.path() / log);
+      record["log"] = log;
+    }
+    return record;
   }
 
-  const PlannedRun& run;
-  ChildProcess child;
+ private:
+  const PlannedRun& run_;
+  const ResultsFolder& results_;
+  ChildProcess child_;
+  mutable std::error_code ignored_;
 };
 
 /// Waits until a child has something to say, a deadline passes or a signal comes.
@@ -90,15 +124,37 @@ void wait_for_news(const StopSignals& stop, const std::list<Running>& running) {
   std::vector<pollfd> watched{{stop.descriptor(), POLLIN, 0}};
   auto deadline = ChildProcess::Clock::time_point::max();
   for (const Running& r : running) {
-    watched.push_back({r.child.descriptor(), POLLIN, 0});
-    deadline = std::min(deadline, r.child.deadline());
+    watched.push_back({r.child().descriptor(), POLLIN, 0});
+    deadline = std::min(deadline, r.child().deadline());
   }
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - ChildProcess::Clock::now()).count();
   constexpr long long longest = 3'600'000;
   poll(watched.data(), watched.size(), static_cast<int>(std::clamp<long long>(left, 0, longest)));
 }
 
+/// One a day.
+std::filesystem::path log_file(const ResultsFolder& results) {
+  return results.path() / "logs" / fmt::format("run-{:%Y-%m-%d}.log", fmt::gmtime(std::time(nullptr)));
+}
+
 }  // namespace
+
+Record record_of(const PlannedRun& run, const ChildProcess& child) {
+  const auto failed = [&](const std::string& reason) { return unsuccessful_record(run.spec, "failed", reason); };
+  if (!child.failure().empty()) {
+    Record record = failed(child.failure());
+    if (!child.signal().empty()) record["signal"] = child.signal();
+    return record;
+  }
+  Record sent = Record::parse(child.output(), nullptr, /*allow_exceptions=*/false);
+  if (const std::optional<std::string> defect = record_defect(sent)) {
+    constexpr std::size_t shown = 80;
+    return failed(fmt::format("sent no record ({}) but {} bytes: \"{}\"", *defect, child.output().size(),
+                              child.output().substr(0, shown)));
+  }
+  if (sent["id"] != run.id) return failed(fmt::format("sent the record of another run, {}", sent["id"].dump()));
+  return sent;
+}
 
 RunSummary run_plan(const Plan& plan, const ExemplarCatalog& exemplars, const ResultsFolder& results,
                     const RunOptions& options, bool* interrupted) {
@@ -112,28 +168,31 @@ RunSummary run_plan(const Plan& plan, const ExemplarCatalog& exemplars, const Re
   ReadRecords earlier = results.read();
   summary.bad_lines = std::move(earlier.bad_lines);
 
-  std::vector<std::string> ids;
-  for (const PlannedRun& run : plan.runs) ids.push_back(run.id);
-  const std::vector<std::optional<Record>> recorded = latest_by_id(earlier.records, ids);
+  const History history(earlier.records);
+  earlier.records.clear();
+
   std::deque<const PlannedRun*> pending;
-  for (std::size_t i = 0; i < plan.runs.size(); ++i) {
-    const bool reusable = recorded[i] && (*recorded[i])["status"] != "failed";
-    if (reusable && !options.fresh) {
+  for (const PlannedRun& run : plan.runs) {
+    if (!options.fresh && history.is_reusable(run.id)) {
       ++summary.reused;
     } else {
-      pending.push_back(&plan.runs[i]);
+      pending.push_back(&run);
     }
   }
 
+  const FolderLock lock(results);
   std::filesystem::create_directories(results.path() / "logs");
+  if (const std::string diff = source_diff(); !diff.empty()) {
+    results.keep_text("provenance/" + sha256(diff) + ".diff", diff);
+  }
   // Looked up here once, and inherited by every child.
   provenance();
-  Progress progress(pending.size(), options.show_progress);
+  Progress progress(pending.size(), options.show_progress, log_file(results));
   const StopSignals stop;
   std::list<Running> running;
   while (!pending.empty() || !running.empty()) {
     while (!pending.empty() && std::ssize(running) < options.jobs) {
-      running.emplace_back(*pending.front(), exemplars, results, options.threads);
+      running.emplace_back(*pending.front(), exemplars, results, options);
       pending.pop_front();
     }
     wait_for_news(stop, running);
@@ -142,7 +201,7 @@ RunSummary run_plan(const Plan& plan, const ExemplarCatalog& exemplars, const Re
       break;
     }
     for (auto r = running.begin(); r != running.end();) {
-      if (!r->child.receive()) {
+      if (!r->child().receive()) {
         ++r;
         continue;
       }

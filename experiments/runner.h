@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "experiments/child_process.h"
 #include "experiments/exemplars.h"
 #include "experiments/plan.h"
 #include "experiments/record.h"
@@ -28,9 +29,17 @@ struct RunSummary {
   std::vector<BadLine> bad_lines;  ///< of the records that were there before: skipped, kept in the file
 };
 
+/// What a child that has ended leaves of its run: the record that it sent, or one of status "failed" that says why
+/// there is none: the signal, the limit that it broke, garbage where the record was expected.
+Record record_of(const PlannedRun& run, const ChildProcess& child);
+
 /// Every planned run ends as a record or was there before (status "ok" or "refused"; failures are tried again).
 /// Children are forked, so this process must not have started threads. SIGINT and SIGTERM stop the children, keep
 /// what is recorded and return what was done so far with `interrupted` set.
+///
+/// The folder also gets logs/run-DATE.log (progress), logs/ID.stderr (what a failed run printed) and, of a program
+/// built from uncommitted sources, provenance/SHA256.diff. A run without a memory limit of its own may take its share,
+/// among `jobs`, of three quarters of the machine's memory.
 RunSummary run_plan(const Plan& plan, const ExemplarCatalog& exemplars, const ResultsFolder& results,
                     const RunOptions& options, bool* interrupted);
 

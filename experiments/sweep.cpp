@@ -50,8 +50,11 @@ Sweep::Sweep(const RunsTable& table, SweepChoices choices, const ExemplarCatalog
     }
   }
   axes_.emplace_back("seeds", table.seeds.size());
-  if (table.zip) {
+  if (table.combine == Combine::zip) {
     check_zip();
+  }
+  if (table.combine == Combine::ablate) {
+    check_ablation();
   }
   for (std::size_t i = 0; i < table.exclude.size(); ++i) {
     exclusions_.push_back(read_exclusion(i, catalog));
@@ -62,24 +65,26 @@ std::size_t Sweep::count() const {
   constexpr std::size_t largest = std::numeric_limits<std::size_t>::max();
   std::size_t product = 1;
   std::size_t longest = 1;
-  for (const auto& [path, length] : axes_) {
+  const auto multiply = [&](std::size_t length) {
     product = product <= largest / length ? product * length : largest;
     longest = std::max(longest, length);
+  };
+  for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
+    if (table_.combine != Combine::ablate || !is_param(axis)) {
+      multiply(axes_[axis].second);
+    }
   }
-  return table_.zip ? longest : product;
+  if (table_.combine == Combine::ablate) {
+    multiply(ablation_count());
+  }
+  return table_.combine == Combine::zip ? longest : product;
 }
 
 void Sweep::expand(const std::function<void(RunSpec, const ChosenExemplar&)>& take) const {
   const std::size_t runs = count();
   bool any = false;
-  std::vector<std::size_t> digits(axes_.size());
   for (std::size_t run = 0; run < runs; ++run) {
-    std::size_t rest = run;
-    for (std::size_t axis = axes_.size(); axis-- > 0;) {
-      const std::size_t length = axes_[axis].second;
-      digits[axis] = table_.zip ? std::min(run, length - 1) : rest % length;
-      rest /= length;
-    }
+    const std::vector<std::size_t> digits = table_.combine == Combine::zip ? zip_digits(run) : grid_digits(run);
     RunSpec spec = make_spec(digits);
     if (std::ranges::none_of(exclusions_, [&](const Exclusion& exclusion) { return exclusion.matches(spec); })) {
       any = true;
@@ -88,6 +93,58 @@ void Sweep::expand(const std::function<void(RunSpec, const ChosenExemplar&)>& ta
   }
   if (!any) {
     throw ConfigError(place_of(table_, "exclude"), "empty sweep: exclude leaves no run");
+  }
+}
+
+bool Sweep::is_param(std::size_t axis) const {
+  return axis >= first_param_axis && axis < first_param_axis + params_.size();
+}
+
+/// The base, and every further value of every parameter.
+std::size_t Sweep::ablation_count() const {
+  std::size_t settings = 1;
+  for (const auto& [name, values] : params_) {
+    settings += values.size() - 1;
+  }
+  return settings;
+}
+
+std::vector<std::size_t> Sweep::zip_digits(std::size_t run) const {
+  std::vector<std::size_t> digits;
+  for (const auto& [path, length] : axes_) {
+    digits.push_back(std::min(run, length - 1));
+  }
+  return digits;
+}
+
+/// Of an ablation, all parameters together are one axis of the grid.
+std::vector<std::size_t> Sweep::grid_digits(std::size_t run) const {
+  std::vector<std::size_t> digits(axes_.size());
+  const auto take_digit = [&](std::size_t length) {
+    const std::size_t digit = run % length;
+    run /= length;
+    return digit;
+  };
+  for (std::size_t axis = axes_.size(); axis-- > 0;) {
+    if (table_.combine != Combine::ablate || !is_param(axis)) {
+      digits[axis] = take_digit(axes_[axis].second);
+    } else if (axis == first_param_axis) {
+      std::size_t change = take_digit(ablation_count());
+      std::size_t changed = axis;
+      while (is_param(changed) && change > axes_[changed].second - 1) {
+        change -= axes_[changed++].second - 1;
+      }
+      digits[changed] = change;
+    }
+  }
+  return digits;
+}
+
+void Sweep::check_ablation() const {
+  if (ablation_count() == 1) {
+    throw ConfigError(
+        place_of(table_, "combine"),
+        "combine = \"ablate\": expected a parameter with at least two values, the first its base, in params");
   }
 }
 
@@ -173,7 +230,8 @@ RunSpec Sweep::make_spec(const std::vector<std::size_t>& digits) const {
           .samples = table_.samples,
           .metrics = choices_.metrics,
           .pictures = choices_.pictures,
-          .timeout_seconds = table_.timeout_seconds};
+          .timeout_seconds = table_.timeout_seconds,
+          .memory_limit_mb = table_.memory_limit_mb};
 }
 
 }  // namespace textonbench

@@ -56,6 +56,12 @@ class Sweep {
   Exclusion read_exclusion(std::size_t index, const ExemplarCatalog& catalog) const;
   ParamValue read_exclusion_param(const std::string& name, const ParamValue& value, const std::string& path) const;
   void check_zip() const;
+  void check_ablation() const;
+  bool is_param(std::size_t axis) const;
+  std::size_t ablation_count() const;
+  /// Position on each axis of the run of that number.
+  std::vector<std::size_t> zip_digits(std::size_t run) const;
+  std::vector<std::size_t> grid_digits(std::size_t run) const;
   RunSpec make_spec(const std::vector<std::size_t>& digits) const;
 
   const RunsTable& table_;

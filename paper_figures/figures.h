@@ -31,8 +31,8 @@ struct FigureSummary {
 std::filesystem::path figures_folder(const Config& config);
 
 /// Writes figures/<config>/<name>.* below the results folder, one figure for each [[figures]] table. A figure is
-/// refused, the others being made all the same, when records of its runs are missing or come from different git commits
-/// or code versions; files of an earlier time are then removed. Throws ConfigError for a figure table that cannot be
+/// refused, the others being made all the same, when records of its runs are missing or come from different code
+/// versions; files of an earlier time are then removed. Throws ConfigError for a figure table that cannot be
 /// understood (before anything is written), std::runtime_error for a file that cannot be written, and when a chart is
 /// asked for and gnuplot is not installed.
 FigureSummary make_figures(const Config& config, const Plan& plan, const ResultsFolder& results);

@@ -34,6 +34,7 @@ Command list_command(CLI::App& app, const GlobalOptions& globals);
 Command synth_command(CLI::App& app, const GlobalOptions& globals);
 Command measure_command(CLI::App& app, const GlobalOptions& globals);
 Command run_command(CLI::App& app, const GlobalOptions& globals);
+Command merge_command(CLI::App& app, const GlobalOptions& globals);
 Command figures_command(CLI::App& app, const GlobalOptions& globals);
 Command report_command(CLI::App& app, const GlobalOptions& globals);
 

@@ -1,14 +1,18 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
 #include <map>
 #include <memory>
+#include <set>
 #include <stdexcept>
 
 #include "experiments/cli/command.h"
 #include "experiments/cli/run_filter.h"
 #include "experiments/cli/table.h"
+#include "experiments/history.h"
+#include "experiments/progress.h"
 #include "experiments/provenance.h"
 #include "experiments/runner.h"
 
@@ -20,7 +24,7 @@ struct RunCommandOptions {
   Profile profile = Profile::quick;
   int jobs = 1;
   std::string filter;
-  bool dry_run = false, fresh = false, yes_large = false, json = false;
+  bool dry_run = false, explain = false, fresh = false, yes_large = false, json = false;
 };
 
 /// The plans of all configs as one, each run once.
@@ -42,8 +46,87 @@ Plan joint_plan(const RunCommandOptions& options, const std::filesystem::path& h
   return joint;
 }
 
-int show_plan(const Plan& plan, bool json) {
-  if (json) {
+/// The earlier records, without making the folder.
+History read_history(const std::filesystem::path& results) {
+  return History(std::filesystem::exists(results / "records.jsonl") ? ResultsFolder(results).read().records
+                                                                    : std::vector<Record>{});
+}
+
+/// Time of the runs that would be made.
+class TimeEstimate {
+ public:
+  TimeEstimate(const Plan& plan, const History& history, const ExemplarCatalog& exemplars, bool fresh) {
+    std::map<std::string, Extent> sizes;
+    for (const PlannedRun& run : plan.runs) {
+      if (!fresh && history.is_reusable(run.id)) {
+        ++reused_;
+        continue;
+      }
+      const auto [size, is_new] = sizes.try_emplace(run.spec.exemplar);
+      if (is_new && run.spec.size.area() == 0) {
+        const std::optional<Extent> known = history.exemplar_size(run.spec.exemplar_sha256);
+        size->second = known ? *known : load_exemplar(exemplars.find(run.spec.exemplar)).pixels.extent();
+      }
+      if (const auto seconds = history.estimate_seconds(run.spec, size->second)) {
+        seconds_ += *seconds;
+      } else {
+        ++unknown_;
+        methods_.insert(run.spec.method);
+      }
+    }
+  }
+
+  double seconds(int jobs) const { return seconds_ / jobs; }
+  std::size_t reused() const { return reused_; }
+  std::size_t unknown() const { return unknown_; }
+
+  std::string text(const Plan& plan, int jobs) const {
+    const std::size_t estimated = plan.runs.size() - reused_ - unknown_;
+    std::string text = fmt::format("{} reused", reused_);
+    if (estimated > 0) {
+      text += fmt::format("; {} more take about {} with --jobs {}", estimated, readable_duration(seconds(jobs)), jobs);
+    }
+    if (unknown_ > 0) {
+      text += fmt::format("; the time of {} is unknown: no record of {} yet", unknown_, fmt::join(methods_, ", "));
+    }
+    return text;
+  }
+
+ private:
+  double seconds_ = 0;
+  std::size_t reused_ = 0, unknown_ = 0;
+  std::set<std::string> methods_;
+};
+
+/// --explain: what would happen to each run, and why.
+int explain_plan(const Plan& plan, const RunCommandOptions& options, const History& history) {
+  nlohmann::ordered_json runs = nlohmann::ordered_json::array();
+  std::size_t reused = 0;
+  for (const PlannedRun& run : plan.runs) {
+    const bool recorded = history.is_reusable(run.id);
+    const bool reuse = recorded && !options.fresh;
+    const std::string reason = reuse ? "recorded" : recorded ? "asked for by --fresh" : history.why_run(run);
+    reused += reuse ? 1 : 0;
+    if (options.json) {
+      runs.push_back({{"id", run.id},
+                      {"action", reuse ? "reuse" : "run"},
+                      {"reason", reason},
+                      {"command", command_line(run.spec)}});
+    } else {
+      fmt::print("{} {}\n    {}\n", reuse ? "reuse" : "run  ", command_line(run.spec), reason);
+    }
+  }
+  if (options.json) {
+    print_json({{"planned", plan.runs.size()}, {"reused", reused}, {"runs", runs}});
+  } else {
+    fmt::print("{} runs planned, {} to reuse, {} to run; none executed (--explain)\n", plan.runs.size(), reused,
+               plan.runs.size() - reused);
+  }
+  return 0;
+}
+
+int show_plan(const Plan& plan, const RunCommandOptions& options, const TimeEstimate& estimate) {
+  if (options.json) {
     nlohmann::ordered_json runs = nlohmann::ordered_json::array(), missing = nlohmann::ordered_json::array();
     for (const PlannedRun& run : plan.runs) {
       runs.push_back({{"id", run.id}, {"label", run.label}, {"command", command_line(run.spec)}});
@@ -51,7 +134,12 @@ int show_plan(const Plan& plan, bool json) {
     for (const MissingExemplar& exemplar : plan.missing) {
       missing.push_back({{"name", exemplar.name}, {"how_to_get", exemplar.how_to_get}, {"runs", exemplar.runs}});
     }
-    print_json({{"planned", plan.runs.size()}, {"missing", missing}, {"runs", runs}});
+    print_json({{"planned", plan.runs.size()},
+                {"reused", estimate.reused()},
+                {"estimated_seconds", estimate.seconds(options.jobs)},
+                {"unknown", estimate.unknown()},
+                {"missing", missing},
+                {"runs", runs}});
     return 0;
   }
   std::map<std::pair<std::string, std::string>, int> counts;
@@ -60,7 +148,7 @@ int show_plan(const Plan& plan, bool json) {
   rows.reserve(counts.size());
   for (const auto& [key, count] : counts) rows.push_back({key.first, key.second, std::to_string(count)});
   print_table({{"METHOD"}, {"EXEMPLAR"}, {"RUNS", Align::right}}, rows);
-  fmt::print("{} runs planned, none executed (--dry-run)\n", plan.runs.size());
+  fmt::print("{} runs planned, none executed (--dry-run); {}\n", plan.runs.size(), estimate.text(plan, options.jobs));
   return 0;
 }
 
@@ -74,7 +162,10 @@ int run(const RunCommandOptions& options, const GlobalOptions& globals) {
   }
   if (!options.filter.empty())
     plan = {.runs = filter_runs(plan, options.filter), .missing = plan.missing, .by_label = {}};
-  if (options.dry_run) return show_plan(plan, options.json);
+  if (options.explain) return explain_plan(plan, options, read_history(globals.results));
+  if (options.dry_run) {
+    return show_plan(plan, options, TimeEstimate(plan, read_history(globals.results), exemplars, options.fresh));
+  }
 
   const ResultsFolder results(globals.results);
   const RunOptions how{.jobs = options.jobs,
@@ -119,7 +210,8 @@ Command run_command(CLI::App& app, const GlobalOptions& globals) {
       ->check(CLI::Range(1, 1024));
   command->add_option("--filter", options->filter,
                       "Only runs with key=pattern,..., such as method=rpn,exemplar=mamurk*");
-  command->add_flag("--dry-run", options->dry_run, "Show the plan and execute nothing");
+  command->add_flag("--dry-run", options->dry_run, "Show the plan with an estimate of its time; execute nothing");
+  command->add_flag("--explain", options->explain, "Say of each run why it would be reused or made; execute nothing");
   command->add_flag("--fresh", options->fresh, "Run again what is recorded already");
   command->add_flag("--yes-large", options->yes_large, "Accept a sweep of more than 20000 runs");
   command->add_flag("--json", options->json, "Print one JSON document");

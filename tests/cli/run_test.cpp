@@ -83,6 +83,52 @@ TEST_F(RunCommandTest, ADryRunExecutesNothing) {
   EXPECT_FALSE(std::filesystem::exists(file("results")));
 }
 
+TEST_F(RunCommandTest, ADryRunEstimatesFromEarlierRecords) {
+  write_sweep(2);
+  EXPECT_THAT(run({"run", "sweep.toml", "--dry-run"}).out,
+              HasSubstr("0 reused; the time of 2 is unknown: no record of rpn yet"));
+  run_json({"run", "sweep.toml"});
+  write_sweep(4, "[[runs]]\nname = \"other\"\nmethod = \"adsn\"\nexemplars = \"ring\"\n");
+  Json told = run_json({"run", "sweep.toml", "--dry-run"});
+  EXPECT_EQ(told["reused"], 2);
+  EXPECT_EQ(told["unknown"], 1);
+  const double seconds = told["estimated_seconds"].get<double>();
+  EXPECT_GT(seconds, 0);
+  told = run_json({"run", "sweep.toml", "--dry-run", "--fresh", "--jobs", "2"});
+  EXPECT_EQ(told["reused"], 0);
+  EXPECT_NEAR(told["estimated_seconds"].get<double>(), seconds, 1e-9) << "twice the runs, two at once";
+  EXPECT_EQ(record_count(), 2U);
+}
+
+TEST_F(RunCommandTest, ExplainSaysWhyARunWouldBeMade) {
+  write_sweep(2);
+  run_json({"run", "sweep.toml"});
+  write_sweep(3);
+  const Outcome outcome = run({"run", "sweep.toml", "--explain"});
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("reuse textonbench measure rpn white_noise"),
+                                 HasSubstr("run   textonbench measure rpn white_noise"),
+                                 HasSubstr("never run: differs from the nearest recorded run in seed (2 -> 3)"),
+                                 HasSubstr("3 runs planned, 2 to reuse, 1 to run")));
+  const Json told = run_json({"run", "sweep.toml", "--explain", "--fresh"});
+  EXPECT_EQ(told["reused"], 0);
+  EXPECT_EQ(told["runs"][0]["action"], "run");
+  EXPECT_EQ(told["runs"][0]["reason"], "asked for by --fresh");
+  EXPECT_EQ(record_count(), 2U);
+}
+
+TEST_F(RunCommandTest, MergedRecordsAreReused) {
+  write_sweep(2);
+  run_json({"run", "sweep.toml", "--results", "elsewhere"});
+  const Json merged = run_json({"merge", "elsewhere", "elsewhere/records.jsonl"})["merged"];
+  EXPECT_EQ(merged[0]["added"], 2);
+  EXPECT_EQ(merged[1]["added"], 0);
+  EXPECT_EQ(merged[1]["present"], 2);
+  EXPECT_EQ(run_json({"run", "sweep.toml"})["reused"], 2);
+  const Outcome outcome = run({"merge", "nowhere"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("nowhere: expected a records file"));
+}
+
 TEST_F(RunCommandTest, ARecordsCommandRepeatsItsNumbers) {
   std::ofstream(file("window.toml"))
       << "title = \"Windows\"\nsource = \"test\"\n[[runs]]\nname = \"windows\"\nmethod = \"adsn\"\n"

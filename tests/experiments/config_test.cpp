@@ -84,7 +84,7 @@ columns = [{run = "rpn", picture = "sample", seed = 1}]
   const RunsTable& runs = config.runs[0];
   EXPECT_EQ(runs.label, "rpn");
   EXPECT_EQ(runs.place.line, 7U);
-  EXPECT_TRUE(runs.zip);
+  EXPECT_EQ(runs.combine, Combine::zip);
   EXPECT_THAT(runs.methods, ElementsAre("rpn", "adsn"));
   EXPECT_THAT(runs.exemplars, ElementsAre("@default", "ring"));
   EXPECT_THAT(runs.seeds, ElementsAre(1U, 9223372036854775807U));
@@ -122,7 +122,7 @@ TEST_F(ConfigTest, StatesItsDefaults) {
   EXPECT_THAT(runs.seeds, ElementsAre(1U));
   EXPECT_THAT(runs.sizes, ElementsAre(Extent{}));
   EXPECT_THAT(runs.periodic, ElementsAre(true));
-  EXPECT_FALSE(runs.zip);
+  EXPECT_EQ(runs.combine, Combine::grid);
   EXPECT_EQ(runs.samples, 1);
   EXPECT_EQ(runs.timeout_seconds, 300);
   EXPECT_THAT(runs.metrics, IsEmpty());
@@ -257,7 +257,7 @@ TEST_F(ConfigTest, RefusesWrongTypesAndValues) {
   EXPECT_THAT(wrong("samples = [1, 2]"), HasSubstr("found a list"));
   EXPECT_THAT(wrong("seeds = [1, -2]"), AllOf(StartsWith("7:13: "), HasSubstr("found the whole number -2")));
   EXPECT_THAT(wrong("periodic = \"yes\""), HasSubstr("periodic: expected true or false"));
-  EXPECT_THAT(wrong("combine = \"product\""), HasSubstr("expected \"grid\" or \"zip\", found \"product\""));
+  EXPECT_THAT(wrong("combine = \"product\""), HasSubstr("expected \"grid\", \"zip\" or \"ablate\", found \"product\""));
   EXPECT_THAT(wrong("timeout_seconds = 0"), HasSubstr("expected a number above 0"));
   EXPECT_THAT(wrong("timeout_seconds = \"long\""), HasSubstr("expected a number above 0"));
   EXPECT_THAT(wrong("size = [512]"), HasSubstr("expected [width, height], found a list of 1"));

@@ -76,9 +76,10 @@ TEST_F(PlanTest, AGridIsTheProductOfItsListsInOrder) {
 }
 
 TEST_F(PlanTest, ARunIsComplete) {
-  const Plan p = plan_table(rpn_ +
-                            "seeds = 7\nsize = [300, 200]\nperiodic = false\nsamples = 3\ntimeout_seconds = 9\n"
-                            "metrics = [\"skewness\", \"rme\", \"rme\"]\npictures = [\"sample\", \"exemplar\"]");
+  const Plan p = plan_table(
+      rpn_ +
+      "seeds = 7\nsize = [300, 200]\nperiodic = false\nsamples = 3\ntimeout_seconds = 9\nmemory_limit_mb = 512\n"
+      "metrics = [\"skewness\", \"rme\", \"rme\"]\npictures = [\"sample\", \"exemplar\"]");
   ASSERT_EQ(p.runs.size(), 1U);
   const PlannedRun& run = p.runs[0];
   EXPECT_EQ(run.label, "a");
@@ -90,6 +91,7 @@ TEST_F(PlanTest, ARunIsComplete) {
   EXPECT_EQ(run.spec.seed, 7U);
   EXPECT_EQ(run.spec.samples, 3);
   EXPECT_EQ(run.spec.timeout_seconds, 9);
+  EXPECT_EQ(run.spec.memory_limit_mb, 512);
   EXPECT_THAT(run.spec.metrics, ElementsAre("rme", "skewness"));
   EXPECT_THAT(run.spec.pictures, ElementsAre("exemplar", "sample"));
 }
@@ -104,6 +106,35 @@ TEST_F(PlanTest, AZipAdvancesItsListsTogether) {
 TEST_F(PlanTest, AZipOfDifferentLengthsIsRefused) {
   EXPECT_THAT(table_error("method = \"rpn\"\nexemplars = [\"ring\", \"grass\"]\nseeds = [1, 2, 3]\ncombine = \"zip\""),
               AllOf(StartsWith("6:13: "), HasSubstr("exemplars has 2 values where seeds has 3")));
+}
+
+TEST_F(PlanTest, AnAblationChangesOneParameterAtATime) {
+  const Plan p = plan_table(
+      "method = \"rpn\"\nexemplars = [\"ring\", \"grass\"]\nseeds = [1, 2]\ncombine = \"ablate\"\n"
+      "params.component = [\"raw\", \"periodic\"]\nparams.phase = [\"added\", \"replaced\"]");
+  std::vector<std::string> runs;
+  for (const PlannedRun& run : p.runs) {
+    runs.push_back(run.spec.exemplar + " " + to_string(run.spec.params.at("component")) + " " +
+                   to_string(run.spec.params.at("phase")) + " " + std::to_string(run.spec.seed));
+  }
+  EXPECT_THAT(runs, ElementsAre("ring raw added 1", "ring raw added 2", "ring periodic added 1",
+                                "ring periodic added 2", "ring raw replaced 1", "ring raw replaced 2",
+                                "grass raw added 1", "grass raw added 2", "grass periodic added 1",
+                                "grass periodic added 2", "grass raw replaced 1", "grass raw replaced 2"));
+}
+
+TEST_F(PlanTest, AnAblationPassesOverParametersOfOneValue) {
+  const Plan p = plan_table(rpn_ +
+                            "combine = \"ablate\"\nparams.component = \"raw\"\n"
+                            "params.phase = [\"replaced\", \"added\"]\nexclude = [{phase = \"replaced\"}]");
+  ASSERT_EQ(p.runs.size(), 1U);
+  EXPECT_EQ(to_string(p.runs[0].spec.params.at("component")), "raw");
+  EXPECT_EQ(to_string(p.runs[0].spec.params.at("phase")), "added");
+}
+
+TEST_F(PlanTest, AnAblationWithoutAListOfParametersIsRefused) {
+  EXPECT_THAT(table_error(rpn_ + "seeds = [1, 2]\ncombine = \"ablate\"\nparams.component = \"raw\""),
+              AllOf(StartsWith("8:11: "), HasSubstr("expected a parameter with at least two values")));
 }
 
 TEST_F(PlanTest, ExcludeTakesAwayWhatMatchesAllItsKeys) {

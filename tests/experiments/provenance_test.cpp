@@ -40,11 +40,15 @@ TEST(ProvenanceTest, TellsCodeMachineAndLibraries) {
   const nlohmann::ordered_json p = provenance();
   std::vector<std::string> keys;
   for (const auto& [key, value] : p.items()) keys.push_back(key);
-  EXPECT_THAT(keys, testing::ElementsAre("version", "code_version", "git_commit", "git_dirty", "compiler", "flags",
-                                         "build_type", "cpu", "cores", "threads", "os", "libraries", "fft_plans"));
+  EXPECT_THAT(
+      keys, testing::ElementsAre("version", "code_version", "git_commit", "git_dirty", "git_diff", "compiler", "flags",
+                                 "build_type", "cpu", "simd", "cores", "threads", "os", "libraries", "fft_plans"));
   EXPECT_THAT(p["version"].get<std::string>(), MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
   EXPECT_THAT(p["git_commit"].get<std::string>(), MatchesRegex("[0-9a-f]{40}|unknown"));
   EXPECT_TRUE(p["git_dirty"].is_boolean() || p["git_dirty"] == "unknown");
+  EXPECT_EQ(p["git_diff"],
+            std::string(source_diff()).empty() ? nullptr : nlohmann::ordered_json(sha256(source_diff())));
+  EXPECT_THAT(p["simd"].get<std::string>(), testing::AnyOf("avx512f", "avx2", "default"));
   EXPECT_THAT(p["flags"].get<std::string>(), HasSubstr("-ffp-contract=off"));
   EXPECT_GE(p["cores"].get<int>(), 1);
   EXPECT_GE(p["threads"].get<int>(), 1);
@@ -126,6 +130,11 @@ class BuildInfoTest : public testing::Test {
     return {};
   }
 
+  std::string text_of(const std::string& name) const {
+    std::ifstream in(folder_.path() / name);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
   TemporaryFolder folder_;
 };
 
@@ -165,6 +174,12 @@ TEST_F(BuildInfoTest, TellsTheCommitAndWhetherFilesDiffer) {
   EXPECT_EQ(value_of("git_state"), "clean");
   write("experiments/runner.cpp", "int other;\n");
   EXPECT_EQ(value_of("git_state"), "dirty");
+  write("methods/new.cpp", "const char* quoted = R\"(a;b)\";\n");
+  value_of("git_state");
+  const std::string header = text_of("build_info.h");
+  EXPECT_THAT(header, testing::AllOf(HasSubstr("\n-int r;\n+int other;\n"), HasSubstr("+++ b/methods/new.cpp\n"),
+                                     HasSubstr("\n+const char* quoted = R\"(a;b)\";\n")))
+      << "sources that are not added yet are told as well";
   EXPECT_EQ(value_of("git_commit", "PATH=/nowhere"), "unknown") << "git is not installed";
 }
 

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <csignal>
 #include <fstream>
+#include <list>
 #include <set>
 #include <thread>
 
@@ -18,14 +19,16 @@ namespace textonbench::runner_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::MatchesRegex;
 
 // --- children ------------------------------------------------------------------------------------------------------
 
 class ChildProcessTest : public testing::Test {
  protected:
   /// Runs `work` to its end.
-  std::unique_ptr<ChildProcess> finish(const std::function<std::string()>& work, double timeout_seconds = 60) const {
-    auto child = std::make_unique<ChildProcess>(work, log(), timeout_seconds);
+  std::unique_ptr<ChildProcess> finish(const std::function<std::string()>& work,
+                                       const ChildLimits& limits = {.seconds = 60}) const {
+    auto child = std::make_unique<ChildProcess>(work, log(), limits);
     while (!child->receive()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return child;
   }
@@ -49,6 +52,7 @@ TEST_F(ChildProcessTest, ACrashIsToldWithTheSignalAndTheLastLines) {
     std::abort();
   });
   EXPECT_EQ(child->failure(), "killed by SIGABRT; its last words: line 7\nline 8\nline 9");
+  EXPECT_EQ(child->signal(), "SIGABRT");
   EXPECT_TRUE(std::filesystem::exists(log()));
 }
 
@@ -58,13 +62,30 @@ TEST_F(ChildProcessTest, AnEndlessLoopIsCutAtItsTimeout) {
       []() -> std::string {
         while (true) pause();
       },
-      0.05);
+      {.seconds = 0.05});
+  EXPECT_EQ(child->signal(), "") << "the runner's own";
   EXPECT_THAT(child->failure(), HasSubstr("no result within 0.05 s"));
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
 }
 
 TEST_F(ChildProcessTest, AnEarlyExitIsAFailureByItsStatus) {
   EXPECT_EQ(finish([]() -> std::string { _exit(3); })->failure(), "ended with status 3");
+}
+
+TEST_F(ChildProcessTest, AllocationWithoutEndIsOutOfMemory) {
+  if (!enforces_memory_limits()) GTEST_SKIP() << "a build with a sanitizer has no memory limit";
+  const auto child = finish(
+      []() -> std::string {
+        for (std::list<std::string> all;;) all.emplace_back(1 << 20, 'x');
+      },
+      {.seconds = 60, .memory_bytes = 256 << 20});
+  EXPECT_EQ(child->failure(), "out of memory (memory_limit_mb = 256)");
+}
+
+TEST_F(ChildProcessTest, OutputWithoutEndIsCut) {
+  const auto child = finish([] { return std::string(std::size_t{200} << 20, 'x'); });
+  EXPECT_EQ(child->failure(), "sent more than 64 MiB where a record was expected");
+  EXPECT_EQ(child->output(), "");
 }
 
 TEST_F(ChildProcessTest, DiesWithItsObject) {
@@ -78,13 +99,35 @@ TEST_F(ChildProcessTest, DiesWithItsObject) {
           (void)!write(ends[1], &own, sizeof own);
           while (true) pause();
         },
-        log(), 60);
+        log(), {.seconds = 60});
     ASSERT_EQ(read(ends[0], &pid, sizeof pid), static_cast<ssize_t>(sizeof pid));
     EXPECT_EQ(kill(pid, 0), 0);
     close(ends[0]);
     close(ends[1]);
   }
   EXPECT_EQ(kill(pid, 0), -1);
+}
+
+TEST_F(ChildProcessTest, OnlyTheRecordOfItsRunIsTakenForIt) {
+  PlannedRun run;
+  run.spec.method = "rpn";
+  run.id = run_id(run.spec);
+  const auto reason_after = [&](const std::string& sent) {
+    const Record record = record_of(run, *finish([&] { return sent; }));
+    EXPECT_EQ(record["id"], run.id);
+    EXPECT_EQ(record["status"], "failed");
+    return record["reason"].get<std::string>();
+  };
+  EXPECT_EQ(reason_after(""), "sent no record (not JSON (cut short?)) but 0 bytes: \"\"");
+  EXPECT_THAT(reason_after("\xff\x01garbage"), AllOf(HasSubstr("not JSON"), HasSubstr("9 bytes: \"\xff\x01garbage")));
+  EXPECT_THAT(reason_after("[1, 2]"), HasSubstr("not a JSON object"));
+  EXPECT_THAT(reason_after("{\"schema\": 1, \"id\": \"x\"}"), HasSubstr("no text under \"status\""));
+  EXPECT_EQ(reason_after(R"({"schema": 1, "id": "x", "status": "ok"})"), "sent the record of another run, \"x\"");
+  const Record own = {{"schema", 1}, {"id", run.id}, {"status", "ok"}};
+  EXPECT_EQ(record_of(run, *finish([&] { return own.dump(); })), own);
+  const Record crash = record_of(run, *finish([]() -> std::string { std::abort(); }));
+  EXPECT_EQ(crash["signal"], "SIGABRT");
+  EXPECT_EQ(crash["metrics"], Record::object()) << "nothing measured is no zero";
 }
 
 // --- plans ---------------------------------------------------------------------------------------------------------
@@ -131,10 +174,11 @@ class RunnerTest : public testing::Test {
   bool interrupted_ = true;
 };
 
-/// Kills the runner's child as soon as there is one; a process of its own, because the runner's must not have threads.
+/// Sends a signal to the runner's child as soon as it is at work; a process of its own, because the runner's must not
+/// have threads.
 class Assassin {
  public:
-  Assassin() {
+  explicit Assassin(int signal) {
     const pid_t parent = getpid();
     pid_ = fork();
     if (pid_ != 0) return;
@@ -142,8 +186,11 @@ class Assassin {
     while (true) {
       std::ifstream in(children);
       for (pid_t child = 0; in >> child;) {
-        if (child == getpid()) continue;
-        kill(child, SIGKILL);
+        // Once its output goes to its log, it is at work.
+        std::error_code gone;
+        const auto output = std::filesystem::read_symlink("/proc/" + std::to_string(child) + "/fd/2", gone);
+        if (child == getpid() || output.extension() != ".stderr") continue;
+        kill(child, signal);
         _exit(0);
       }
       usleep(1000);
@@ -240,10 +287,64 @@ TEST_F(RunnerTest, ATimeoutIsAFailedRecord) {
 
 TEST_F(RunnerTest, ACrashIsAFailedRecord) {
   const Plan plan = make_endless_plan();
-  const Assassin assassin;
+  const Assassin assassin(SIGKILL);
   EXPECT_EQ(run(plan).failed, 1U);
   ASSERT_EQ(records().size(), 1U);
-  EXPECT_THAT(records()[0]["reason"].get<std::string>(), HasSubstr("killed by SIGKILL"));
+  EXPECT_EQ(records()[0]["reason"], "killed by SIGKILL");
+  EXPECT_EQ(records()[0]["signal"], "SIGKILL");
+}
+
+TEST_F(RunnerTest, WhatAFailedRunPrintedIsKeptUntilItSucceeds) {
+  // The child inherits the handler: a run that says something before it ends.
+  const auto previous = std::signal(SIGUSR1, [](int) {
+    (void)!write(STDERR_FILENO, "a last word\n", 12);
+    _exit(7);
+  });
+  Plan plan = make_endless_plan();
+  {
+    const Assassin assassin(SIGUSR1);
+    EXPECT_EQ(run(plan).failed, 1U);
+  }
+  std::signal(SIGUSR1, previous);
+  const std::string log = "logs/" + plan.runs[0].id + ".stderr";
+  ASSERT_EQ(records().size(), 1U);
+  EXPECT_EQ(records()[0]["reason"], "ended with status 7; its last words: a last word");
+  EXPECT_EQ(records()[0]["log"], log);
+  EXPECT_EQ(std::filesystem::file_size(folder_.path() / log), 12U);
+
+  Plan quick = make_small_plan(1);
+  std::filesystem::rename(folder_.path() / log, folder_.path() / ("logs/" + quick.runs[0].id + ".stderr"));
+  EXPECT_EQ(run(quick).recorded, 1U);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / "logs")) {
+    EXPECT_EQ(entry.path().extension(), ".log") << entry.path();
+  }
+}
+
+TEST_F(RunnerTest, ARunThatNeedsMoreMemoryThanItMayTakeFails) {
+  if (!enforces_memory_limits()) GTEST_SKIP() << "a build with a sanitizer has no memory limit";
+  Plan plan = make_small_plan(2);
+  plan.runs[0].spec.samples = 100000;
+  plan.runs[0].spec.memory_limit_mb = 256;
+  plan.runs[0] = finish(plan.runs[0]);
+  const RunSummary summary = run(plan);
+  EXPECT_EQ(summary.failed, 1U);
+  EXPECT_EQ(summary.recorded, 1U);
+  EXPECT_EQ(records()[0]["reason"], "out of memory (memory_limit_mb = 256)");
+}
+
+TEST_F(RunnerTest, TheLogTellsStartFailuresAndEnd) {
+  Plan plan = make_small_plan(2);
+  plan.runs[0].spec.pictures = {"sample_3"};
+  plan.runs[0] = finish(plan.runs[0]);
+  run(plan);
+  std::string log;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / "logs")) {
+    EXPECT_THAT(entry.path().filename().string(), MatchesRegex("run-[0-9]{4}-[0-9]{2}-[0-9]{2}\\.log"));
+    std::ifstream in(entry.path());
+    log.append(std::istreambuf_iterator<char>(in), {});
+  }
+  EXPECT_THAT(log, AllOf(HasSubstr("start: 2 runs to make"), HasSubstr("failed: textonbench measure rpn"),
+                         HasSubstr("raise samples"), HasSubstr("end: 2/2 runs, 1 failed in ")));
 }
 
 TEST_F(RunnerTest, TellsDamagedLinesOfEarlierRecords) {
