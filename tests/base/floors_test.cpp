@@ -34,13 +34,10 @@ const std::map<std::string, std::vector<std::string>, std::less<>> foundations =
 
 /// Headers of libraries (by their beginning) with the files (by theirs) that may include them.
 const std::map<std::string, std::vector<std::string>, std::less<>> library_users = {
-    {"OpenImageIO/", {"methods/base/image_io.cpp"}},
-    {"fftw3", {"methods/base/fft.cpp"}},
-    {"Random123/", {"methods/base/random"}},
-    {"toml++/", {"experiments/toml_reader"}},
-    {"openssl/", {"experiments/provenance"}},
-    {"kainjow/", {"paper_figures/"}},
-    {"CLI/", {"experiments/cli/"}},
+    {"OpenImageIO/", {"methods/base/image_io.cpp"}},  {"fftw3", {"methods/base/fft.cpp"}},
+    {"Random123/", {"methods/base/random"}},          {"toml++/", {"experiments/toml_reader"}},
+    {"openssl/", {"experiments/provenance"}},         {"kainjow/", {"paper_figures/"}},
+    {"sqlite3", {"paper_figures/export_sqlite.cpp"}}, {"CLI/", {"experiments/cli/"}},
 };
 
 /// The folder of `foundations` that a path from the root belongs to, or "methods/NAME" for a family; empty when none.
