@@ -70,7 +70,8 @@ class ExemplarChooser {
   std::unordered_map<std::string, ChosenExemplar> chosen_;  // its elements never move
 };
 
-/// Sorted names, each once; "@all", "@model", "@sample" and "@cost" stand for metrics of that level.
+/// Sorted names, each once; "@all", "@model", "@sample" and "@cost" stand for metrics of that level,
+/// "@identity" for those that test theory, which the others leave out.
 std::vector<std::string> choose_metrics(const RunsTable& table) {
   std::set<std::string> names;
   for (std::size_t i = 0; i < table.metrics.size(); ++i) {
@@ -83,12 +84,13 @@ std::vector<std::string> choose_metrics(const RunsTable& table) {
       constexpr std::pair<std::string_view, MetricLevel> levels[] = {
           {"@model", MetricLevel::model}, {"@sample", MetricLevel::sample}, {"@cost", MetricLevel::cost}};
       const auto level = std::ranges::find(levels, name, &std::pair<std::string_view, MetricLevel>::first);
-      if (level == std::end(levels) && name != "@all") {
+      if (level == std::end(levels) && name != "@all" && name != "@identity") {
         throw std::invalid_argument(
-            fmt::format("unknown group of metrics \"{}\"; expected @all, @model, @sample or @cost", name));
+            fmt::format("unknown group of metrics \"{}\"; expected @all, @model, @sample, @cost or @identity", name));
       }
       for (const MetricEntry& entry : metric_catalog()) {
-        if (name == "@all" || entry.level == level->second) {
+        const bool in_group = name == "@identity" || name == "@all" || entry.level == level->second;
+        if (in_group && entry.identity == (name == "@identity")) {
           names.insert(std::string(entry.name));
         }
       }

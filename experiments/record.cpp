@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "experiments/atomic_file.h"
 #include "experiments/provenance.h"
 
 namespace textonbench {
@@ -140,16 +141,10 @@ std::string ResultsFolder::keep_picture(const std::filesystem::path& file) const
 void ResultsFolder::keep_text(const std::filesystem::path& name, const std::string& text) const {
   const std::filesystem::path file = folder_ / name;
   if (std::filesystem::exists(file)) return;
-  const std::filesystem::path draft =
-      file.parent_path() / fmt::format(".draft_{}_{}", ::getpid(), file.filename().string());
   std::error_code error;
   std::filesystem::create_directories(file.parent_path(), error);
-  const bool written = !error && static_cast<bool>(std::ofstream(draft, std::ios::binary) << text << std::flush);
-  if (written) std::filesystem::rename(draft, file, error);
-  if (written && !error) return;
-  std::error_code ignored;
-  std::filesystem::remove(draft, ignored);
-  throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
+  if (error) throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
+  write_atomically(file, text);
 }
 
 std::vector<std::optional<Record>> latest_by_id(const std::vector<Record>& records,

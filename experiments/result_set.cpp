@@ -35,7 +35,7 @@ void require_known_schema(const Record& json, const std::filesystem::path& file,
 }
 
 /// Why a line is no record, or nothing.
-std::optional<std::string> record_defect(const Record& json) {
+std::optional<std::string> result_defect(const Record& json) {
   if (json.is_discarded()) return "not JSON (cut short?)";
   if (!json.is_object() || !json.contains("schema")) return "not a record";
   for (const char* key : {"id", "status"}) {
@@ -69,7 +69,7 @@ ResultSet read_result_set(const std::filesystem::path& folder_or_file) {
     ++number;
     Record json = Record::parse(line, nullptr, /*allow_exceptions=*/false);
     if (json.is_object()) require_known_schema(json, set.file, number);
-    if (std::optional<std::string> defect = record_defect(json)) {
+    if (std::optional<std::string> defect = result_defect(json)) {
       set.bad_lines.push_back({number, *std::move(defect)});
       continue;
     }

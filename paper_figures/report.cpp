@@ -9,6 +9,7 @@
 #include "paper_figures/figure_kind.h"
 #include "paper_figures/figures.h"
 #include "paper_figures/files.h"
+#include "paper_figures/ledger_page.h"
 #include "paper_figures/report_context.h"
 #include "paper_figures/report_history.h"
 #include "paper_figures/report_runs.h"
@@ -149,6 +150,7 @@ std::filesystem::path write_report(const std::vector<ReportConfig>& configs, con
                                                       {"css", template_file("report.css")},
                                                       {"js", template_file("report.js")},
                                                       {"summary", summary_of(configs, runs)},
+                                                      {"has_ledger", std::filesystem::exists(ledger_page(results))},
                                                       {"picture_note", picture_note(side)},
                                                       {"tiles", tiles_of(configs, runs)},
                                                       {"configs", std::move(views)},

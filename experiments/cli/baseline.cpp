@@ -7,6 +7,8 @@
 #include <memory>
 
 #include "experiments/cli/command.h"
+#include "experiments/ledger.h"
+#include "experiments/provenance.h"
 
 namespace textonbench::cli {
 namespace {
@@ -23,10 +25,16 @@ int update(const BaselineArguments& arguments, const GlobalOptions& globals) {
                                               fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now)));
   if (done.failed > 0) fmt::print(stderr, "{} failed runs left out\n", done.failed);
   if (done.other_code > 0) fmt::print(stderr, "{} runs of other code versions left out\n", done.other_code);
+  const std::filesystem::path home = home_folder();
+  const Ledger ledger = read_ledger(home, ExemplarCatalog(home), Profile::quick);
+  const std::vector<ClaimOutcome> outcomes =
+      evaluate_claims(ledger.claims, ledger.plans, ResultsFolder(globals.results).read().records);
+  write_verdicts(verdicts_file(globals.results), verdicts_of(outcomes));
   if (arguments.json) {
     print_json(done.history_line);
   } else {
-    fmt::print("{}: {} runs; a line added to history.jsonl\n", folder.string(), done.runs);
+    fmt::print("{}: {} runs and {} verdicts on claims; a line added to history.jsonl\n", folder.string(), done.runs,
+               outcomes.size());
   }
   return 0;
 }

@@ -95,7 +95,8 @@ std::vector<std::filesystem::path> all_configs(const std::filesystem::path& home
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(home / "configs")) {
     const std::filesystem::path& file = entry.path();
-    if (file.extension() == ".toml" && file.filename() != "exemplars.toml") files.push_back(file);
+    const bool is_claims = file.parent_path() == home / "configs" / "claims";
+    if (file.extension() == ".toml" && file.filename() != "exemplars.toml" && !is_claims) files.push_back(file);
   }
   std::sort(files.begin(), files.end());
   return files;

@@ -37,6 +37,7 @@ Command run_command(CLI::App& app, const GlobalOptions& globals);
 Command merge_command(CLI::App& app, const GlobalOptions& globals);
 Command figures_command(CLI::App& app, const GlobalOptions& globals);
 Command report_command(CLI::App& app, const GlobalOptions& globals);
+Command claims_command(CLI::App& app, const GlobalOptions& globals);
 Command compare_command(CLI::App& app, const GlobalOptions& globals);
 Command baseline_command(CLI::App& app, const GlobalOptions& globals);
 Command export_command(CLI::App& app, const GlobalOptions& globals);
@@ -70,7 +71,7 @@ ExemplarInfo find_exemplar(const ExemplarCatalog& catalog, const std::string& na
 
 /// A file, or the name of a config below configs/ ("lectures2022/rpn_adsn").
 std::filesystem::path find_config(const std::filesystem::path& home, const std::string& name_or_file);
-/// Every experiment config below configs/, sorted.
+/// Every experiment config below configs/, sorted: all but the exemplars' catalog and the claims.
 std::vector<std::filesystem::path> all_configs(const std::filesystem::path& home);
 /// The named ones, or all when none is named.
 std::vector<std::filesystem::path> chosen_configs(const std::filesystem::path& home,

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <map>
 #include <memory>
@@ -6,6 +7,7 @@
 
 #include "experiments/cli/command.h"
 #include "experiments/cli/table.h"
+#include "experiments/ledger.h"
 #include "experiments/metrics/metric.h"
 #include "experiments/provenance.h"
 #include "methods/base/image_io.h"
@@ -80,6 +82,7 @@ void list_metrics(bool json) {
                        {"unit", metric.unit},
                        {"level", level_name(metric.level)},
                        {"better", better_name(metric.better)},
+                       {"identity", metric.identity},
                        {"reference", metric.reference}});
     rows.push_back({std::string(metric.name), level_name(metric.level), std::string(metric.unit),
                     better_name(metric.better), std::string(metric.title)});
@@ -157,6 +160,31 @@ void list_configs(bool json) {
   print_table({{"CONFIG"}, {"TITLE"}, {"SOURCE"}}, rows);
 }
 
+void list_claims(bool json) {
+  const std::filesystem::path home = home_folder();
+  const Ledger ledger = read_ledger(home, ExemplarCatalog(home), Profile::quick);
+  Json claims = Json::array();
+  std::vector<std::vector<std::string>> rows;
+  for (const Claim& claim : ledger.claims) {
+    const std::string config = claim.test ? claim.test->config : "";
+    claims.push_back({{"id", claim.id},
+                      {"paper", claim.paper},
+                      {"where", claim.where},
+                      {"statement", claim.statement},
+                      {"kind", claim.kind},
+                      {"paper_value", claim.paper_value},
+                      {"how", claim.how},
+                      {"caveat", claim.caveat},
+                      {"note", claim.note},
+                      {"needs", claim.needs},
+                      {"config", config}});
+    rows.push_back({claim.id, claim.paper, claim.kind,
+                    config.empty() ? fmt::format("{}", fmt::join(claim.needs, ", ")) : config, claim.statement});
+  }
+  if (json) return print_json({{"claims", claims}});
+  print_table({{"ID"}, {"PAPER"}, {"KIND"}, {"CONFIG OR NEEDS"}, {"CLAIM"}}, rows);
+}
+
 }  // namespace
 
 Command list_command(CLI::App& app, const GlobalOptions&) {
@@ -165,10 +193,10 @@ Command list_command(CLI::App& app, const GlobalOptions&) {
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* list = app.add_subcommand("list", "Tell what there is: methods, metrics, exemplars or configs");
-  list->add_option("WHAT", options->what, "methods, metrics, exemplars or configs")
+  CLI::App* list = app.add_subcommand("list", "Tell what there is: methods, metrics, exemplars, configs or claims");
+  list->add_option("WHAT", options->what, "methods, metrics, exemplars, configs or claims")
       ->required()
-      ->check(CLI::IsMember({"methods", "metrics", "exemplars", "configs"}));
+      ->check(CLI::IsMember({"methods", "metrics", "exemplars", "configs", "claims"}));
   list->add_flag("--json", options->json, "Print one JSON document");
   set_examples(*list, "  textonbench list exemplars");
   return {list, [options] {
@@ -176,6 +204,7 @@ Command list_command(CLI::App& app, const GlobalOptions&) {
             if (options->what == "metrics") list_metrics(options->json);
             if (options->what == "exemplars") list_exemplars(options->json);
             if (options->what == "configs") list_configs(options->json);
+            if (options->what == "claims") list_claims(options->json);
             return 0;
           }};
 }

@@ -37,9 +37,10 @@ int run(int argc, char** argv) {
   app.footer(
       "Example:\n"
       "  textonbench synth adsn mamurk_a_1 -o sample.png && textonbench measure adsn mamurk_a_1\n"
-      "Exit status: 0 done, 1 the answer is no (a run failed, a metric is worse), 2 unusable input. Configs are "
-      "looked\n"
-      "for in the folder that TEXTONBENCH_HOME names, exemplars also in the folder that TEXTONBENCH_DATA names.");
+      "Exit status: 0 done, 1 the answer is no (a run failed, a metric or a claim got worse), 2 unusable input. "
+      "Configs "
+      "are looked for\n"
+      "in the folder that TEXTONBENCH_HOME names, exemplars also in the folder that TEXTONBENCH_DATA names.");
   app.failure_message([](const CLI::App* failed, const CLI::Error& error) {
     return fmt::format("textonbench: error: {}\n(see textonbench {}--help)\n", error.what(),
                        failed->get_subcommands().empty() ? "" : failed->get_subcommands().front()->get_name() + " ");
@@ -49,8 +50,8 @@ int run(int argc, char** argv) {
   for (const auto make :
        {textonbench::cli::list_command, textonbench::cli::synth_command, textonbench::cli::measure_command,
         textonbench::cli::run_command, textonbench::cli::merge_command, textonbench::cli::figures_command,
-        textonbench::cli::report_command, textonbench::cli::compare_command, textonbench::cli::baseline_command,
-        textonbench::cli::export_command}) {
+        textonbench::cli::report_command, textonbench::cli::claims_command, textonbench::cli::compare_command,
+        textonbench::cli::baseline_command, textonbench::cli::export_command}) {
     commands.push_back(make(app, globals));
   }
   try {

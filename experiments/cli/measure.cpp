@@ -33,7 +33,9 @@ RunSpec make_spec(const MeasureOptions& options, const ExemplarInfo& exemplar) {
   spec.samples = options.samples;
   spec.metrics = options.metrics;
   if (spec.metrics.empty()) {
-    for (const MetricEntry& metric : metric_catalog()) spec.metrics.emplace_back(metric.name);
+    for (const MetricEntry& metric : metric_catalog()) {
+      if (!metric.identity) spec.metrics.emplace_back(metric.name);
+    }
   }
   for (const std::string& name : spec.metrics) find_metric(name);
   std::sort(spec.metrics.begin(), spec.metrics.end());
@@ -95,7 +97,7 @@ Command measure_command(CLI::App& app, const GlobalOptions& globals) {
   command->add_option("--samples", options->samples, "Samples to draw")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
-  command->add_option("--metrics", options->metrics, "Comma-separated metrics (all)")
+  command->add_option("--metrics", options->metrics, "Comma-separated metrics (all but tests of theory)")
       ->delimiter(',')
       ->allow_extra_args(false);
   command->add_flag("--json", options->json, "Print one JSON document");

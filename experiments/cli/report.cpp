@@ -5,7 +5,9 @@
 #include <memory>
 
 #include "experiments/cli/command.h"
+#include "experiments/ledger.h"
 #include "experiments/provenance.h"
+#include "paper_figures/ledger_page.h"
 
 namespace textonbench::cli {
 namespace {
@@ -27,6 +29,8 @@ int write(const ReportOptions& options, const GlobalOptions& globals) {
     Plan plan = make_plan(config, exemplars);
     configs.push_back({.config = std::move(config), .plan = std::move(plan)});
   }
+  const Ledger ledger = read_ledger(home, exemplars, options.profile);
+  write_ledger_page(evaluate_claims(ledger.claims, ledger.plans, results.read().records), results);
   const std::filesystem::path page = std::filesystem::absolute(write_report(configs, exemplars, results));
   if (options.json) {
     print_json({{"report", page.string()}});

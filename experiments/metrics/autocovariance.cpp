@@ -110,4 +110,11 @@ std::unique_ptr<SampleMetric> autocovariance_error_quarter(const Target& target,
   return std::make_unique<AutocovarianceError>(target, domain, Extent{domain.size.width / 4, domain.size.height / 4});
 }
 
+std::unique_ptr<SampleMetric> circular_autocovariance_error(const Target& target, const Domain& domain, Seed) {
+  GaussianModel raw = gaussian_model(target.exemplar.pixels);
+  Autocovariance covariance = autocovariance(raw.spectrum);
+  const Target as_it_is{target.exemplar, target.exemplar.pixels, std::move(raw), std::move(covariance)};
+  return std::make_unique<AutocovarianceError>(as_it_is, domain, Extent{32, 32});
+}
+
 }  // namespace textonbench

@@ -25,4 +25,7 @@ std::unique_ptr<SampleMetric> autocovariance_error_32(const Target& target, cons
 /// L = (W / 4, H / 4) of the samples: shows a support that was cut.
 std::unique_ptr<SampleMetric> autocovariance_error_quarter(const Target& target, const Domain& domain, Seed seed);
 
+/// L = 32 pixels, against another law: the periodic autocorrelation of the exemplar as it is, border jumps included.
+std::unique_ptr<SampleMetric> circular_autocovariance_error(const Target& target, const Domain& domain, Seed seed);
+
 }  // namespace textonbench

@@ -4,13 +4,16 @@
 #include <stdexcept>
 
 #include "experiments/metrics/autocovariance.h"
+#include "experiments/metrics/border_cross.h"
 #include "experiments/metrics/color_covariance.h"
 #include "experiments/metrics/cramer_von_mises.h"
 #include "experiments/metrics/metric.h"
 #include "experiments/metrics/model_error.h"
+#include "experiments/metrics/modulus_and_phase.h"
 #include "experiments/metrics/moments.h"
 #include "experiments/metrics/patch_distance.h"
 #include "experiments/metrics/spectral_distance.h"
+#include "experiments/metrics/transport_identities.h"
 
 namespace textonbench {
 namespace {
@@ -137,6 +140,95 @@ constexpr std::array catalog{
                 .level = MetricLevel::cost,
                 .better = Better::lower,
                 .reference = "arithmetic operations for each pixel of the sample; an FFT counts 2.5 n log₂ n a plane"},
+    MetricEntry{.name = "modulus_error",
+                .title = "Modulus error",
+                .unit = "1",
+                .level = MetricLevel::sample,
+                .better = Better::lower,
+                .reference = "max |‖ŷ| − |t̂‖ / max |t̂| on the own torus (Lectures 2022, RPN)",
+                .of_samples = modulus_error,
+                .identity = true},
+    MetricEntry{.name = "rayleigh_distance",
+                .title = "Distance of the modulus from the Rayleigh law",
+                .unit = "1",
+                .level = MetricLevel::sample,
+                .better = Better::neither,
+                .reference = "√n sup |F_n − F| of |ŷ| / |t̂| (Lectures 2022, ADSN); 0.869 for the exact law",
+                .of_samples = rayleigh_distance,
+                .identity = true},
+    MetricEntry{.name = "phase_uniformity",
+                .title = "Distance of the phase from the uniform law",
+                .unit = "1",
+                .level = MetricLevel::sample,
+                .better = Better::neither,
+                .reference = "√n sup |F_n − F| of arg ŷ − arg t̂ (Lectures 2022, RPN); 0.869 for the exact law",
+                .of_samples = phase_uniformity,
+                .identity = true},
+    MetricEntry{
+        .name = "circular_autocovariance_error",
+        .title = "Autocovariance error against the raw exemplar",
+        .unit = "1",
+        .level = MetricLevel::sample,
+        .better = Better::lower,
+        .reference = "as autocovariance_error_32, Γ the periodic autocorrelation of the exemplar (EUSIPCO 2014, 3.1)",
+        .of_samples = circular_autocovariance_error,
+        .identity = true},
+    MetricEntry{.name = "periodic_laplacian_error",
+                .title = "Poisson equation of the periodic component",
+                .unit = "1",
+                .level = MetricLevel::model,
+                .better = Better::lower,
+                .reference = "max |Δp − Δ'u| / max |Δ'u| (Lectures 2022, periodic component)",
+                .of_model = periodic_laplacian_error,
+                .identity = true},
+    MetricEntry{.name = "axis_energy_ratio",
+                .title = "Power on the axes of the spectrum",
+                .unit = "1",
+                .level = MetricLevel::model,
+                .better = Better::neither,
+                .reference = "power on the axes / power 4 to 8 bins beside them (Lectures 2022, periodic component)",
+                .of_model = axis_energy_ratio,
+                .identity = true},
+    MetricEntry{.name = "axis_power_error",
+                .title = "Error of the power on the axes",
+                .unit = "dB",
+                .level = MetricLevel::model,
+                .better = Better::lower,
+                .reference = "mean |10 log₁₀(power / power under a Hann window)| over half octaves of the axes",
+                .of_model = axis_power_error,
+                .identity = true},
+    MetricEntry{.name = "transport_identity_error",
+                .title = "Closed form of the transport distance",
+                .unit = "1",
+                .level = MetricLevel::model,
+                .better = Better::lower,
+                .reference = "against dense Gaussian laws on 8 x 8 (EUSIPCO 2014, eq. 1), relative",
+                .of_model = transport_identity_error,
+                .identity = true},
+    MetricEntry{.name = "window_transport_ratio",
+                .title = "Transport distance on a window",
+                .unit = "1",
+                .level = MetricLevel::model,
+                .better = Better::neither,
+                .reference = "W2² a pixel on 8 x 8 / that on 24 x 24 (EUSIPCO 2014, 2.3); at most 1",
+                .of_model = window_transport_ratio,
+                .identity = true},
+    MetricEntry{.name = "projection_distance_ratio",
+                .title = "Distance reached by imposing the modulus",
+                .unit = "1",
+                .level = MetricLevel::model,
+                .better = Better::neither,
+                .reference = "least distance over 1000 perturbations / transport distance (EUSIPCO 2014, eq. 2)",
+                .of_model = projection_distance_ratio,
+                .identity = true},
+    MetricEntry{.name = "spot_symmetry_error",
+                .title = "Autocorrelation of mirrored spots",
+                .unit = "1",
+                .level = MetricLevel::model,
+                .better = Better::lower,
+                .reference = "max |Γ − Γ of −h, h(−x), −h(−x)| / Γ(0) (EUSIPCO 2014, 3.1)",
+                .of_model = spot_symmetry_error,
+                .identity = true},
 };
 
 }  // namespace

@@ -54,6 +54,8 @@ struct MetricEntry {
   std::optional<double> (*of_model)(const Model&, const Target&, const Domain&) = nullptr;
   /// Of a sample-level metric. `seed` fixes what the metric draws itself (projections, points).
   std::unique_ptr<SampleMetric> (*of_samples)(const Target&, const Domain&, Seed seed) = nullptr;
+  /// Tests a statement of theory rather than how good a method is: measured when asked for by name or as "@identity".
+  bool identity = false;
 };
 
 /// All metrics in the order they are listed. Cost metrics have neither function: execute.cpp measures them.

@@ -96,11 +96,11 @@ TEST_F(FaultsTest, ASweepKilledTwentyTimesEndsAsAnUndisturbedOne) {
     const pid_t program = start_program({"run", "sweep.toml", "--jobs", "2"}, surroundings_);
     // A child dies, then its parent, after some records each: at most 7 a round, so that the sweep cannot end before.
     ASSERT_TRUE(wait_for_records(recorded + random() % 4, program)) << content_of(file("stderr"));
-    usleep(random() % 20000);
+    usleep(static_cast<useconds_t>(random() % 20000));
     const std::vector<pid_t> children = children_of(program);
     if (!children.empty()) kill(children[random() % children.size()], SIGKILL);
     ASSERT_TRUE(wait_for_records(count_lines("results/records.jsonl") + random() % 3, program));
-    usleep(random() % 10000);
+    usleep(static_cast<useconds_t>(random() % 10000));
     kill(program, SIGKILL);
     waitpid(program, nullptr, 0);
     recorded = count_lines("results/records.jsonl");
