@@ -12,7 +12,7 @@
 namespace textonbench {
 namespace {
 
-constexpr int bottom = 62;
+constexpr int axis_space = 62;
 constexpr double symbol_size = 0.75;
 constexpr const char* floor_style = "lw 3 lc rgb \"#a9aeb6\"";
 
@@ -77,7 +77,7 @@ Layout lay_out(const ChartContents& chart) {
   std::vector<KeyItem> key = lay_out_key(left, texts);
   const int top = key_height(key);
   const int row_height = std::max(26, 13 * static_cast<int>(chart.series.size()) + 12);
-  const int height = top + row_height * static_cast<int>(chart.rows.size()) + bottom;
+  const int height = top + row_height * static_cast<int>(chart.rows.size()) + axis_space;
   return {left, top, height, std::move(key)};
 }
 
@@ -167,7 +167,7 @@ std::string plot_command(const ChartContents& chart) {
 std::string chart_script(const ChartContents& chart, const std::string& name) {
   const Layout layout = lay_out(chart);
   std::string text = "set encoding utf8\nset errorbars small\nunset key\n";
-  text += margins(layout.left, 20, bottom, layout.top, layout.height);
+  text += margins(layout.left, 20, axis_space, layout.top, layout.height);
   text += data_blocks(chart) + axes(chart) + labels(chart, layout);
   text += plot_to_files(name, layout.height, plot_command(chart));
   return text;
