@@ -37,6 +37,7 @@ std::vector<ClaimOutcome> chosen(std::vector<ClaimOutcome> outcomes, const Claim
   const auto keep = [&](const std::string& wanted, const char* option, const auto& value_of) {
     if (wanted.empty()) return;
     std::vector<std::string_view> known;
+    known.reserve(outcomes.size());
     for (const ClaimOutcome& outcome : outcomes) known.push_back(value_of(outcome));
     if (std::ranges::find(known, wanted) == known.end()) {
       throw std::invalid_argument(fmt::format("{}: no claim has \"{}\"{} (textonbench list claims)", option, wanted,
