@@ -62,7 +62,8 @@ void check_selection(const ClaimSelection& selection, const Plan& plan) {
   }
   // A table whose exemplars are all elsewhere leaves nothing to check against.
   if (label->second.empty()) return;
-  for (const auto& [key, value] : selection.conditions) {
+  for (const auto& condition : selection.conditions) {
+    const std::string& key = condition.first;
     const bool known =
         std::ranges::any_of(label->second, [&](std::size_t i) { return trait_of(plan.runs[i].spec, key).has_value(); });
     if (!known) {

@@ -127,6 +127,7 @@ std::string History::why_run(const PlannedRun& run) const {
   // A procedural exemplar's hash follows the code.
   const bool other_code = nearest.contains("code_version") && nearest.size() == 1 + nearest.count("exemplar_sha256");
   std::vector<std::string> parts;
+  parts.reserve(nearest.size());
   for (const auto& [key, text] : nearest) parts.push_back(text);
   return fmt::format(
       "{}{}",
