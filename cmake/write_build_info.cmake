@@ -3,30 +3,71 @@
 # Runs at every build, so that the header tells the sources as they are compiled and not as they were configured, and
 # touches its output only when the text changes. Works without git and outside a checkout.
 
-# What decides a run's numbers: the methods, the metrics and what executes them. An edit of a report template or of the
-# command line leaves recorded runs usable.
+cmake_minimum_required(VERSION 3.25)
+
+# What decides a run's numbers: a method, the metrics, and what executes them, each with the headers that it includes and
+# what these declare. An edit of a report template, of the command line or of another method leaves recorded runs usable.
 file(
-  GLOB_RECURSE sources
+  GLOB units
   RELATIVE ${SOURCE}
-  ${SOURCE}/methods/*.h
-  ${SOURCE}/methods/*.cpp
-  ${SOURCE}/experiments/metrics/*.h
-  ${SOURCE}/experiments/metrics/*.cpp)
-foreach(name execute pictures procedural_exemplars)
-  foreach(extension h cpp)
-    if(EXISTS ${SOURCE}/experiments/${name}.${extension})
-      list(APPEND sources experiments/${name}.${extension})
+  ${SOURCE}/methods/*/*.cpp ${SOURCE}/experiments/metrics/*.cpp ${SOURCE}/experiments/execute.cpp
+  ${SOURCE}/experiments/procedural_exemplars.cpp)
+list(FILTER units EXCLUDE REGEX "^methods/base/")
+list(SORT units)
+set(followed "^(methods/|experiments/metrics/|experiments/(execute|pictures|procedural_exemplars)\\.)")
+# A source whose first line of all includes is a header of its folder defines what that header declares.
+file(
+  GLOB_RECURSE bodies
+  RELATIVE ${SOURCE}
+  ${SOURCE}/methods/*.cpp ${SOURCE}/experiments/*.cpp)
+foreach(body IN LISTS bodies)
+  file(STRINGS ${SOURCE}/${body} first LIMIT_COUNT 1 REGEX "^#include ")
+  if(first MATCHES "^#include \"([^\"]*)\"")
+    set(header ${CMAKE_MATCH_1})
+    get_filename_component(folder ${body} DIRECTORY)
+    if(header MATCHES "^${folder}/[^/]*$")
+      list(APPEND bodies_of_${header} ${body})
     endif()
+  endif()
+endforeach()
+
+# Files that `file` leads to by itself, in `next_<file>`, and its hash, in `hash_<file>`.
+macro(read_source file)
+  if(NOT DEFINED hash_${file})
+    file(SHA256 ${SOURCE}/${file} hash_${file})
+    file(STRINGS ${SOURCE}/${file} lines REGEX "^#include \"")
+    set(next_${file} ${bodies_of_${file}})
+    foreach(line IN LISTS lines)
+      string(REGEX REPLACE "^#include \"([^\"]*)\".*" "\\1" included "${line}")
+      if(included MATCHES "${followed}" AND EXISTS ${SOURCE}/${included})
+        list(APPEND next_${file} ${included})
+      endif()
+    endforeach()
+  endif()
+endmacro()
+
+set(source_versions "")
+foreach(unit IN LISTS units)
+  set(reached "")
+  set(ahead ${unit})
+  while(ahead)
+    list(POP_FRONT ahead file)
+    if(NOT file IN_LIST reached)
+      list(APPEND reached ${file})
+      read_source(${file})
+      list(APPEND ahead ${next_${file}})
+    endif()
+  endwhile()
+  list(SORT reached)
+  set(listing "")
+  foreach(file IN LISTS reached)
+    string(APPEND listing "${hash_${file}} ${file}\n")
   endforeach()
+  string(SHA256 version "${listing}")
+  string(SUBSTRING ${version} 0 16 version)
+  string(REGEX REPLACE "\\.cpp$" "" unit ${unit})
+  string(APPEND source_versions "    {\"${unit}\", \"${version}\"},\n")
 endforeach()
-list(SORT sources)
-set(listing "")
-foreach(source IN LISTS sources)
-  file(SHA256 ${SOURCE}/${source} hash)
-  string(APPEND listing "${hash} ${source}\n")
-endforeach()
-string(SHA256 code_version "${listing}")
-string(SUBSTRING ${code_version} 0 16 code_version)
 
 # A source tree unpacked inside somebody else's checkout has no .git of its own and must not borrow that commit.
 set(git_commit unknown)
@@ -79,15 +120,21 @@ set(text
     "// Written by cmake/write_build_info.cmake at each build.
 #pragma once
 
+#include <string_view>
+
 namespace textonbench::build_info {
 
 inline constexpr const char* version = \"${VERSION}\";
-inline constexpr const char* code_version = \"${code_version}\";
 inline constexpr const char* git_commit = \"${git_commit}\";
 inline constexpr const char* git_state = \"${git_state}\";
 inline constexpr const char* compiler = \"${COMPILER}\";
 inline constexpr const char* flags = R\"flags(${FLAGS})flags\";
 inline constexpr const char* build_type = \"${BUILD_TYPE}\";
+struct SourceVersion {
+  std::string_view path, version;
+};
+inline constexpr SourceVersion source_versions[] = {
+${source_versions}};
 inline constexpr const char* source_diff = R\"${delimiter}(${diff})${delimiter}\";
 
 }  // namespace textonbench::build_info

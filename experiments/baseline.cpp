@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 #include <stdexcept>
 #include <vector>
 
-#include "experiments/atomic_file.h"
+#include "experiments/files.h"
 #include "experiments/metrics/metric.h"
+#include "experiments/run_spec.h"
 
 namespace textonbench {
 namespace {
@@ -34,7 +33,15 @@ Record reduced(const Record& record) {
   return kept;
 }
 
-std::string code_of(const Record& record) { return provenance_of(record).value("code_version", "unknown"); }
+/// Whether this program would compute the same, so that it would reuse the record.
+bool is_current(const Record& record) {
+  try {
+    const RunSpec spec = run_spec_from_json(record["spec"]);
+    return provenance_of(record).value("code_version", "unknown") == code_version(spec.method, spec.metrics);
+  } catch (const std::invalid_argument&) {
+    return false;  // a method or metric that is gone
+  }
+}
 
 std::string finished(const Record& record) {
   return record.value("time", Record::object()).value("finished", std::string());
@@ -73,11 +80,6 @@ std::size_t distinct(const std::vector<const Record*>& records, const char* spec
   return values.size();
 }
 
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 }  // namespace
 
 BaselineUpdate update_baseline(const ResultSet& results, const std::filesystem::path& folder, const std::string& reason,
@@ -94,27 +96,32 @@ BaselineUpdate update_baseline(const ResultSet& results, const std::filesystem::
       records.push_back(&record);
     }
   }
+  update.other_code = std::erase_if(records, [](const Record* r) { return !is_current(*r); });
+  update.runs = records.size();
   if (std::none_of(records.begin(), records.end(), [](const Record* r) { return (*r)["status"] == "ok"; })) {
     throw std::invalid_argument(
-        fmt::format("{}: no successful run in it: a baseline cannot be empty", results.file.string()));
+        fmt::format("{}: no successful run of this version of the program in it: a baseline cannot be empty; "
+                    "textonbench run makes the runs again",
+                    results.file.string()));
   }
-  const Record latest = latest_of(records);
-  update.other_code = std::erase_if(records, [&](const Record* r) { return code_of(*r) != code_of(latest); });
-  update.runs = records.size();
+  const Record& latest = latest_of(records);
 
   std::string lines;
   for (const Record* record : records) lines += reduced(*record).dump() + "\n";
   Record& line = update.history_line = {{"schema", record_schema}, {"date", date}};
-  line.update(part_of(provenance_of(latest), {"version", "code_version", "git_commit", "git_dirty"}));
+  line.update(part_of(provenance_of(latest), {"version", "git_commit", "git_dirty"}));
   line["reason"] = reason;
   line["runs"] = records.size();
   line["exemplars"] = distinct(records, "exemplar");
   line["methods"] = distinct(records, "method");
   line["metrics"] = means_of(records);
 
+  const std::filesystem::path history_file = folder / "history.jsonl";
+  const std::string history =
+      (std::filesystem::exists(history_file) ? read_file(history_file) : std::string()) + line.dump() + "\n";
   std::filesystem::create_directories(folder);
   write_atomically(folder / "records.jsonl", lines);
-  write_atomically(folder / "history.jsonl", text_of(folder / "history.jsonl") + line.dump() + "\n");
+  write_atomically(history_file, history);
   return update;
 }
 

@@ -107,11 +107,12 @@ std::optional<std::string> unmet_need(const Claim& claim) {
 
 double number_of(const Record& record, const ClaimSelection& selection) {
   const std::string id = record.value("id", "");
-  const auto metric = record["metrics"].find(selection.metric);
-  if (metric == record["metrics"].end()) {
+  const Record metrics = record.value("metrics", Record::object());
+  const auto metric = metrics.find(selection.metric);
+  if (metric == metrics.end()) {
     throw CannotJudge(fmt::format("record {} has no {}", id, selection.metric));
   }
-  const Record& number = (*metric)[selection.floor ? "floor" : "value"];
+  const Record number = metric->value(selection.floor ? "floor" : "value", Record());
   if (!number.is_number() || !std::isfinite(number.get<double>())) {
     throw CannotJudge(
         fmt::format("record {} has no finite {}{}", id, selection.metric, selection.floor ? " floor" : ""));
@@ -254,7 +255,13 @@ void check_claims(std::span<const Claim> claims, const ClaimPlans& plans) {
 std::vector<ClaimOutcome> evaluate_claims(std::span<const Claim> claims, const ClaimPlans& plans,
                                           const std::vector<Record>& records) {
   RecordsById latest;
-  for (const Record& record : records) latest.insert_or_assign(record.value("id", ""), &record);
+  for (const Record& record : records) {
+    const Record*& kept = latest[record.value("id", "")];
+    // A failure does not take the place of an earlier result.
+    if (kept == nullptr || record.value("status", "") != "failed" || kept->value("status", "") == "failed") {
+      kept = &record;
+    }
+  }
   std::vector<ClaimOutcome> outcomes;
   outcomes.reserve(claims.size());
   for (const Claim& claim : claims) {

@@ -242,6 +242,10 @@ Comparison compare(const ResultSet& old_set, const ResultSet& new_set, const Com
           .newly_failed = newly_failed(pairs)};
 }
 
+std::string change_text(const MetricComparison& row, double change) {
+  return row.relative ? fmt::format("{:+.2f} %", 100 * change) : fmt::format("{:+.3g}", change);
+}
+
 nlohmann::ordered_json to_json(const Comparison& comparison) {
   Record metrics = Record::array();
   for (const MetricComparison& row : comparison.metrics) metrics.push_back(row_to_json(row));

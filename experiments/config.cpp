@@ -195,6 +195,9 @@ Config read_config(const std::filesystem::path& file, Profile profile) {
   if (const TomlEntry* description = reader.find("description")) {
     config.description = read_text(description->value, "description");
   }
+  if (const TomlEntry* appendix = reader.find("appendix")) {
+    config.appendix = read_bool(appendix->value, "appendix");
+  }
 
   RunsTable defaults;
   if (const TomlEntry* entry = reader.find("defaults")) {

@@ -71,6 +71,7 @@ struct Config {
   std::string name;  ///< path below configs/ without extension: "lectures2022/rpn_adsn"
   std::filesystem::path file;
   std::string title, source, description;
+  bool appendix = false;  ///< evidence: the report shows it after the configs that are not
   std::vector<RunsTable> runs;
   std::vector<FigureTable> figures;
 };

@@ -60,6 +60,7 @@ Record blank_record(const RunSpec& spec, const std::string& status, const std::s
   record["pictures"] = Record::object();
   record["time"] = {{"wall_seconds", nullptr}, {"cpu_seconds", nullptr}, {"peak_bytes", nullptr}, {"finished", now()}};
   record["provenance"] = provenance();
+  record["provenance"]["code_version"] = code_version(spec.method, spec.metrics);
   return record;
 }
 
@@ -181,7 +182,7 @@ class Execution {
     if (!floor_samples_.empty()) return;
     floor_domain_ = domain_;
     if (spec_.periodic) floor_domain_.size = exemplar_.pixels.extent();
-    const MethodEntry& adsn = find_method("adsn");
+    const MethodEntry& adsn = find_method(floor_method);
     const Params params(adsn.params, {{"component", "periodic"}});
     const std::unique_ptr<Model> model = adsn.analyze(problem(), params, part("floor_analysis"));
     for (int i = 0; i < spec_.samples; ++i) {

@@ -189,7 +189,8 @@ std::string exemplar_sha256(const ExemplarInfo& info) {
   require_available(info);
   if (info.file.empty()) {
     return sha256(fmt::format("procedural exemplar {}, seed {}, code {}", info.name,
-                              find_procedural(info.name).seed.value, code_version()));
+                              find_procedural(info.name).seed.value,
+                              source_version("experiments/procedural_exemplars")));
   }
   return sha256_of_file(info.file);
 }

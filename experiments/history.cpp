@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <initializer_list>
 
-#include "experiments/provenance.h"
-
 namespace textonbench {
 namespace {
 
@@ -51,6 +49,19 @@ double work_of(const Record& record) {
   return work_of(size, size_of_exemplar(record), number_in(record, {"spec", "samples"}).value_or(0));
 }
 
+constexpr const char* current_code = "current";
+
+/// What flatten takes for the code of a record: one word for the code of this program.
+std::string code_of(const Record& record, const Record& spec) {
+  std::string recorded = text_in(record, {"provenance", "code_version"});
+  try {
+    const auto metrics = spec.at("metrics").get<std::vector<std::string>>();
+    return recorded == code_version(text_in(spec, {"method"}), metrics) ? current_code : recorded;
+  } catch (const std::exception&) {
+    return recorded;  // a method or metric that is gone
+  }
+}
+
 }  // namespace
 
 History::FlatSpec History::flatten(const Record& spec, const std::string& code_version) {
@@ -74,8 +85,7 @@ History::History(const std::vector<Record>& records) {
     const Record* spec = find_in(record, {"spec"});
     if (spec == nullptr || !spec->is_object()) continue;
     const std::string method = text_in(*spec, {"method"});
-    specs_[{method, text_in(*spec, {"exemplar"})}].push_back(
-        flatten(*spec, text_in(record, {"provenance", "code_version"})));
+    specs_[{method, text_in(*spec, {"exemplar"})}].push_back(flatten(*spec, code_of(record, *spec)));
     if (const Extent size = size_of_exemplar(record); size.area() > 0) {
       exemplar_sizes_[text_in(*spec, {"exemplar_sha256"})] = size;
     }
@@ -104,7 +114,7 @@ std::string History::why_run(const PlannedRun& run) const {
   if (group == specs_.end()) {
     return fmt::format("never run: no record of {} on {}", run.spec.method, run.spec.exemplar);
   }
-  const FlatSpec wanted = flatten(to_json(run.spec), code_version());
+  const FlatSpec wanted = flatten(to_json(run.spec), current_code);
   // Parameters of a method may come and go with its code, so either side may lack a key.
   const auto differences = [&](const FlatSpec& old) {
     std::map<std::string, std::string> found;

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "experiments/atomic_file.h"
 #include "experiments/claims_file.h"
+#include "experiments/files.h"
 
 namespace textonbench {
 

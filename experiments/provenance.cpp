@@ -64,7 +64,6 @@ nlohmann::ordered_json constant_part() {
   nlohmann::ordered_json diff;
   if (const std::string_view text = source_diff(); !text.empty()) diff = sha256(text);
   return {{"version", build_info::version},
-          {"code_version", build_info::code_version},
           {"git_commit", build_info::git_commit},
           {"git_dirty", dirty},
           {"git_diff", diff},
@@ -120,7 +119,20 @@ nlohmann::ordered_json provenance() {
   return all;
 }
 
-const char* code_version() { return build_info::code_version; }
+std::string_view source_version(std::string_view path) {
+  for (const build_info::SourceVersion& source : build_info::source_versions) {
+    if (source.path == path) return source.version;
+  }
+  throw std::invalid_argument(fmt::format("{}: no source that decides numbers has this path", path));
+}
+
+std::string_view method_version(std::string_view method) {
+  const std::string ending = fmt::format("/{}", method);
+  for (const build_info::SourceVersion& source : build_info::source_versions) {
+    if (source.path.starts_with("methods/") && source.path.ends_with(ending)) return source.version;
+  }
+  throw std::invalid_argument(fmt::format("{}: no file below methods/ has the name of this method", method));
+}
 
 const char* source_diff() { return build_info::source_diff; }
 

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "experiments/atomic_file.h"
+#include "experiments/files.h"
 #include "experiments/provenance.h"
 
 namespace textonbench {

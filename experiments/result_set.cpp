@@ -28,19 +28,15 @@ void require_known_schema(const Record& json, const std::filesystem::path& file,
   const Record writer = json.value("provenance", Record::object());
   throw std::invalid_argument(fmt::format(
       "{}:{}: a record of schema {}, written by textonbench {}; this one reads schema {}. Compare with the program "
-      "that "
-      "wrote it, or make the records again: \"textonbench run\" for a results folder, and then \"textonbench baseline "
+      "that wrote it, or make the records again: \"textonbench run\" for a results folder, and then \"textonbench "
+      "baseline "
       "update --reason TEXT\" for a baseline",
       file.string(), line, json["schema"].dump(), writer.value("version", "of an unknown version"), record_schema));
 }
 
-/// Why a line is no record, or nothing.
+/// Why a line cannot be compared, or nothing.
 std::optional<std::string> result_defect(const Record& json) {
-  if (json.is_discarded()) return "not JSON (cut short?)";
-  if (!json.is_object() || !json.contains("schema")) return "not a record";
-  for (const char* key : {"id", "status"}) {
-    if (!json.contains(key) || !json[key].is_string()) return fmt::format("no text under \"{}\"", key);
-  }
+  if (std::optional<std::string> defect = record_defect(json)) return defect;
   for (const char* key : {"spec", "metrics"}) {
     if (!json.contains(key) || !json[key].is_object()) return fmt::format("no object under \"{}\"", key);
   }

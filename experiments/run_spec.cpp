@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
+#include "experiments/metrics/metric.h"
 #include "experiments/provenance.h"
 
 namespace textonbench {
@@ -152,8 +155,27 @@ RunSpec run_spec_from_json(const Json& json) {
   return spec;
 }
 
+std::string code_version(const std::string& method, std::span<const std::string> metrics) {
+  // A plan of many runs asks for the same again and again.
+  thread_local std::string last_method, last_version;
+  thread_local std::vector<std::string> last_metrics;
+  if (!last_version.empty() && last_method == method && std::ranges::equal(last_metrics, metrics)) return last_version;
+  std::set<std::string_view> sources;
+  for (const std::string& name : metrics) {
+    if (const std::string_view source = find_metric(name).source; !source.empty()) sources.insert(source);
+  }
+  std::string versions = fmt::format("{} {} {}", source_version("experiments/execute"), method_version(floor_method),
+                                     method_version(method));
+  for (const std::string_view source : sources) {
+    versions += fmt::format(" {}", source_version(fmt::format("experiments/metrics/{}", source)));
+  }
+  last_method = method;
+  last_metrics.assign(metrics.begin(), metrics.end());
+  return last_version = sha256(versions).substr(0, 16);
+}
+
 std::string run_id(const RunSpec& spec) {
-  return sha256(to_json(spec).dump() + "\ncode " + code_version()).substr(0, 16);
+  return sha256(to_json(spec).dump() + "\ncode " + code_version(spec.method, spec.metrics)).substr(0, 16);
 }
 
 std::string command_line(const RunSpec& spec) {

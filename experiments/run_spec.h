@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,15 @@ nlohmann::ordered_json to_json(const RunSpec& spec);
 /// Throws std::invalid_argument naming the key that is missing or wrong.
 RunSpec run_spec_from_json(const nlohmann::ordered_json& json);
 
-/// 16 hexadecimal digits: SHA-256 of to_json(spec) and of code_version(). Two runs with the same id compute the same.
+/// The method whose samples, of the exact Gaussian law of the exemplar, every floor is measured on.
+inline constexpr const char* floor_method = "adsn";
+
+/// 16 hexadecimal digits: SHA-256 of the sources that decide these metrics of a method (provenance.h): the method's own
+/// file, those of the metrics, and what executes them and measures their floors. Throws std::invalid_argument for an
+/// unknown method or metric.
+std::string code_version(const std::string& method, std::span<const std::string> metrics);
+
+/// 16 hexadecimal digits: SHA-256 of to_json(spec) and of its code_version. Two runs with the same id compute the same.
 /// The pictures to keep are part of it, because a record without them cannot stand for one with them; the label of its
 /// table, the order of the plan, threads, jobs and limits are not.
 std::string run_id(const RunSpec& spec);

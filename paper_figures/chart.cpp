@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "experiments/files.h"
 #include "paper_figures/chart_script.h"
-#include "paper_figures/files.h"
 #include "paper_figures/gnuplot.h"
 #include "paper_figures/number_format.h"
 #include "paper_figures/templates.h"
@@ -86,13 +86,13 @@ std::vector<std::filesystem::path> write_chart(const FigureInput& input, const R
   const std::filesystem::path script = with_suffix(stem, ".gp");
   const std::filesystem::path svg = with_suffix(stem, ".svg");
   const std::filesystem::path pdf = with_suffix(stem, ".pdf");
-  write_file(script, chart_script(chart, stem.filename().string()));
+  write_atomically(script, chart_script(chart, stem.filename().string()));
   run_gnuplot(script);
   std::vector<PointNote> notes;
   notes.reserve(chart.points.size());
   for (const ChartPoint& point : chart.points) notes.push_back({point.record, point.hover});
-  write_file(svg, annotated_svg(read_file(svg), notes));
-  write_file(pdf, undated_pdf(read_file(pdf)));
+  write_atomically(svg, annotated_svg(read_file(svg), notes));
+  write_atomically(pdf, undated_pdf(read_file(pdf)));
   return {svg, pdf, script};
 }
 

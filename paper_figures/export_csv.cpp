@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "experiments/atomic_file.h"
+#include "experiments/files.h"
 #include "paper_figures/export.h"
 #include "paper_figures/table.h"
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "experiments/files.h"
 #include "paper_figures/anchors.h"
 #include "paper_figures/figure_kind.h"
-#include "paper_figures/files.h"
 #include "paper_figures/selection.h"
 
 namespace textonbench {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "paper_figures/files.h"
+#include "experiments/files.h"
 #include "paper_figures/gnuplot.h"
 #include "paper_figures/number_format.h"
 #include "paper_figures/templates.h"
@@ -154,7 +154,7 @@ std::vector<std::filesystem::path> write_front(const FigureInput& input, const R
   const std::filesystem::path script = with_suffix(stem, ".gp");
   const std::filesystem::path svg = with_suffix(stem, ".svg");
   const std::filesystem::path pdf = with_suffix(stem, ".pdf");
-  write_file(script, front_script(front, stem.filename().string()));
+  write_atomically(script, front_script(front, stem.filename().string()));
   run_gnuplot(script);
   std::vector<PointNote> notes;
   for (const FrontMean& mean : front.means) {
@@ -164,8 +164,8 @@ std::vector<std::filesystem::path> write_front(const FigureInput& input, const R
                                     in_words(mean.quality, *front.quality), in_words(mean.cost, *front.cost))});
   }
   for (const FrontPoint& point : front.points) notes.push_back({point.record, point.hover});
-  write_file(svg, annotated_svg(read_file(svg), notes));
-  write_file(pdf, undated_pdf(read_file(pdf)));
+  write_atomically(svg, annotated_svg(read_file(svg), notes));
+  write_atomically(pdf, undated_pdf(read_file(pdf)));
   return {svg, pdf, script};
 }
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/files.h"
 #include "paper_figures/anchors.h"
-#include "paper_figures/files.h"
 #include "paper_figures/number_format.h"
 #include "paper_figures/templates.h"
 
@@ -113,11 +113,11 @@ std::filesystem::path write_ledger_page(const std::vector<ClaimOutcome>& outcome
   for (const ClaimOutcome& outcome : outcomes) all.push_back(&outcome);
   std::filesystem::path file = ledger_page(results);
   std::filesystem::create_directories(file.parent_path());
-  write_file(file, render_template("ledger", {{"css", template_file("report.css") + template_file("ledger.css")},
-                                              {"js", template_file("ledger.js")},
-                                              {"count", outcomes.size()},
-                                              {"verdicts", bar_of(all)},
-                                              {"papers", papers_of(outcomes)}}));
+  write_atomically(file, render_template("ledger", {{"css", template_file("report.css") + template_file("ledger.css")},
+                                                    {"js", template_file("ledger.js")},
+                                                    {"count", outcomes.size()},
+                                                    {"verdicts", bar_of(all)},
+                                                    {"papers", papers_of(outcomes)}}));
   return file;
 }
 

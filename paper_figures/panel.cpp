@@ -6,9 +6,9 @@
 #include <array>
 #include <set>
 
+#include "experiments/files.h"
 #include "methods/base/image_io.h"
 #include "paper_figures/anchors.h"
-#include "paper_figures/files.h"
 #include "paper_figures/panel_image.h"
 #include "paper_figures/templates.h"
 
@@ -157,7 +157,7 @@ std::vector<std::filesystem::path> write_panel(const FigureInput& input, const R
   const std::string inputs = panel_digest(layout, side, results);
   if (std::filesystem::exists(file) && std::filesystem::exists(note) && read_file(note) == inputs) return {file};
   write_image(draw_panel(layout, side, results), file);
-  write_file(note, inputs);
+  write_atomically(note, inputs);
   return {file};
 }
 

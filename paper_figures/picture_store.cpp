@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <set>
 
+#include "experiments/files.h"
 #include "methods/base/image_io.h"
 #include "methods/base/parallel.h"
 #include "paper_figures/anchors.h"
-#include "paper_figures/files.h"
 
 namespace textonbench {
 namespace {

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <set>
 
+#include "experiments/files.h"
 #include "paper_figures/anchors.h"
 #include "paper_figures/figure_kind.h"
 #include "paper_figures/figures.h"
-#include "paper_figures/files.h"
 #include "paper_figures/ledger_page.h"
+#include "paper_figures/report_changes.h"
 #include "paper_figures/report_context.h"
 #include "paper_figures/report_history.h"
 #include "paper_figures/report_runs.h"
@@ -112,10 +113,11 @@ Json figures_of(const ReportConfig& config, const std::vector<Record>& records, 
   return views;
 }
 
-Json sections_of(bool has_speed, bool has_history) {
+Json sections_of(bool has_speed, bool has_changes, bool has_history) {
   Json sections = Json::array();
   if (has_speed) sections.push_back({{"anchor", "speed"}, {"title", "Speed"}});
   sections.push_back({{"anchor", "problems"}, {"title", "Failures, refusals and gaps"}});
+  if (has_changes) sections.push_back({{"anchor", "changes"}, {"title", "Since the baseline"}});
   if (has_history) sections.push_back({{"anchor", "history"}, {"title", "History"}});
   sections.push_back({{"anchor", "exemplars"}, {"title", "Exemplars"}});
   sections.push_back({{"anchor", "environment"}, {"title", "Environment"}});
@@ -143,27 +145,30 @@ std::filesystem::path write_report(const std::vector<ReportConfig>& configs, con
   }
   const std::filesystem::path benchmarks = results.path() / "benchmarks.json";
   const std::string speed = std::filesystem::exists(benchmarks) ? speed_html(read_file(benchmarks)) : "";
+  const std::string changes = changes_html(results);
   const std::string history = history_html(results.path() / "baseline" / "history.jsonl");
   const std::string exemplars_section = exemplars_html(runs, exemplars, pictures);
   const int side = pictures.fitting_side();
-  const std::string page = render_template("report", {{"title", report_title},
-                                                      {"css", template_file("report.css")},
-                                                      {"js", template_file("report.js")},
-                                                      {"summary", summary_of(configs, runs)},
-                                                      {"has_ledger", std::filesystem::exists(ledger_page(results))},
-                                                      {"picture_note", picture_note(side)},
-                                                      {"tiles", tiles_of(configs, runs)},
-                                                      {"configs", std::move(views)},
-                                                      {"sections", sections_of(!speed.empty(), !history.empty())},
-                                                      {"speed", speed},
-                                                      {"problems", problems_html(runs, configs, read.bad_lines)},
-                                                      {"history", history},
-                                                      {"exemplars", exemplars_section},
-                                                      {"environment", environment_html(runs)},
-                                                      {"records", records_html(runs, pictures)}});
+  const std::string page =
+      render_template("report", {{"title", report_title},
+                                 {"css", template_file("report.css")},
+                                 {"js", template_file("report.js")},
+                                 {"summary", summary_of(configs, runs)},
+                                 {"has_ledger", std::filesystem::exists(ledger_page(results))},
+                                 {"picture_note", picture_note(side)},
+                                 {"tiles", tiles_of(configs, runs)},
+                                 {"configs", std::move(views)},
+                                 {"sections", sections_of(!speed.empty(), !changes.empty(), !history.empty())},
+                                 {"speed", speed},
+                                 {"problems", problems_html(runs, configs, read.bad_lines)},
+                                 {"changes", changes},
+                                 {"history", history},
+                                 {"exemplars", exemplars_section},
+                                 {"environment", environment_html(runs)},
+                                 {"records", records_html(runs, pictures)}});
   std::filesystem::path file = results.path() / "report" / "index.html";
   std::filesystem::create_directories(file.parent_path());
-  write_file(file, pictures.embed(page, side));
+  write_atomically(file, pictures.embed(page, side));
   return file;
 }
 

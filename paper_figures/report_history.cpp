@@ -7,8 +7,8 @@
 #include <sstream>
 #include <vector>
 
+#include "experiments/files.h"
 #include "experiments/metrics/metric.h"
-#include "paper_figures/files.h"
 #include "paper_figures/metric_choice.h"
 #include "paper_figures/number_format.h"
 #include "paper_figures/templates.h"

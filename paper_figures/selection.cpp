@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 namespace textonbench {
 namespace {
@@ -16,29 +15,6 @@ std::string first_few(const std::vector<std::string>& names) {
       fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), "; "));
   if (shown < names.size()) text += fmt::format("; and {} more", names.size() - shown);
   return text;
-}
-
-/// Code version -> how many records have it.
-std::map<std::string, std::size_t> count_code_versions(const std::vector<SelectedRun>& runs) {
-  std::map<std::string, std::size_t> counts;
-  for (const SelectedRun& run : runs) {
-    if (!run.record) continue;
-    const Record provenance = run.record->value("provenance", Record::object());
-    ++counts[provenance.value("code_version", std::string("unknown"))];
-  }
-  return counts;
-}
-
-/// Commits may differ: an edit of a template or of the documentation leaves the numbers what they were.
-std::optional<std::string> mixed_code_versions(const std::vector<SelectedRun>& runs) {
-  const auto counts = count_code_versions(runs);
-  if (counts.size() < 2) return std::nullopt;
-  std::vector<std::string> parts;
-  parts.reserve(counts.size());
-  for (const auto& [version, count] : counts) {
-    parts.push_back(fmt::format("{} ({} record{})", version, count, count == 1 ? "" : "s"));
-  }
-  return fmt::format("its records mix code versions: {}", fmt::join(parts, ", "));
 }
 
 }  // namespace
@@ -80,9 +56,7 @@ std::optional<std::string> unusable(const Config& config, const std::vector<Sele
     return fmt::format("{} of its {} records {} missing: {}. To make them: {}", missing.size(), runs.size(),
                        missing.size() == 1 ? "is" : "are", first_few(missing), command);
   }
-  auto problem = mixed_code_versions(runs);
-  if (problem) *problem += fmt::format(". To make them alike: {} --fresh", command);
-  return problem;
+  return std::nullopt;
 }
 
 std::string describe(const SelectedRun& run) {

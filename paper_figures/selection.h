@@ -29,8 +29,8 @@ struct SelectedRun {
 /// order, each with its latest record.
 std::vector<SelectedRun> select_runs(const FigureTable& figure, const Plan& plan, const std::vector<Record>& records);
 
-/// Why no figure may be made from these runs: records that are missing (named), or that come from different code
-/// versions; with the command that helps. Nothing when they will do.
+/// Why no figure may be made from these runs: records that are missing (named), with the command that makes them.
+/// Records of another version of the code have another id, so they count as missing. Nothing when they will do.
 std::optional<std::string> unusable(const Config& config, const std::vector<SelectedRun>& runs);
 
 /// "rpn on ring, seed 2 (id 0123456789abcdef)".

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "paper_figures/files.h"
+#include "experiments/files.h"
 #include "paper_figures/number_format.h"
 #include "paper_figures/templates.h"
 
@@ -176,9 +176,9 @@ std::vector<std::filesystem::path> write_table(const FigureInput& input, const R
   const TableContents table = fill_table(input);
   std::vector<std::filesystem::path> files{with_suffix(stem, ".csv"), with_suffix(stem, "_records.csv"),
                                            with_suffix(stem, ".html")};
-  write_file(files[0], summary_csv(table));
-  write_file(files[1], records_csv(table));
-  write_file(files[2], render_template("table", table_view(input, false)));
+  write_atomically(files[0], summary_csv(table));
+  write_atomically(files[1], records_csv(table));
+  write_atomically(files[2], render_template("table", table_view(input, false)));
   return files;
 }
 

@@ -5,8 +5,8 @@
 #include <kainjow/mustache.hpp>
 #include <stdexcept>
 
+#include "experiments/files.h"
 #include "experiments/provenance.h"
-#include "paper_figures/files.h"
 
 namespace textonbench {
 namespace {

@@ -20,15 +20,17 @@ struct BaselineArguments {
 
 int update(const BaselineArguments& arguments, const GlobalOptions& globals) {
   const std::filesystem::path folder = globals.results / "baseline";
-  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  const BaselineUpdate done = update_baseline(read_result_set(globals.results), folder, arguments.reason,
-                                              fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now)));
-  if (done.failed > 0) fmt::print(stderr, "{} failed runs left out\n", done.failed);
-  if (done.other_code > 0) fmt::print(stderr, "{} runs of other code versions left out\n", done.other_code);
+  const ResultSet results = read_result_set(globals.results);
+  // Whatever may be wrong with the claims shows before anything is replaced.
   const std::filesystem::path home = home_folder();
   const Ledger ledger = read_ledger(home, ExemplarCatalog(home), Profile::quick);
   const std::vector<ClaimOutcome> outcomes =
       evaluate_claims(ledger.claims, ledger.plans, ResultsFolder(globals.results).read().records);
+  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  const BaselineUpdate done =
+      update_baseline(results, folder, arguments.reason, fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now)));
+  if (done.failed > 0) fmt::print(stderr, "{} failed runs left out\n", done.failed);
+  if (done.other_code > 0) fmt::print(stderr, "{} runs of other code versions left out\n", done.other_code);
   write_verdicts(verdicts_file(globals.results), verdicts_of(outcomes));
   if (arguments.json) {
     print_json(done.history_line);

@@ -25,7 +25,8 @@ struct ClaimsOptions {
 /// The first `most` letters, cut between words.
 std::string shortened(const std::string& text, std::size_t most) {
   if (text.size() <= most) return text;
-  return text.substr(0, text.rfind(' ', most)) + " …";
+  const std::size_t cut = text.rfind(' ', most);
+  return cut == std::string::npos ? text : text.substr(0, cut) + " …";
 }
 
 std::string in_words(const Estimate& measured) {

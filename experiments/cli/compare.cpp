@@ -35,10 +35,6 @@ Sides chosen_sides(const CompareArguments& arguments, const GlobalOptions& globa
   return {globals.results / "baseline", first.empty() ? globals.results : first};
 }
 
-std::string change_text(const MetricComparison& row, double change) {
-  return row.relative ? fmt::format("{:+.2f} %", 100 * change) : fmt::format("{:+.3g}", change);
-}
-
 std::vector<std::string> cells_of_row(const MetricComparison& row) {
   const std::string name = row.method.empty() ? row.metric : "  " + row.method;
   std::vector<std::string> cells{name, std::string(to_string(row.verdict))};
@@ -118,8 +114,8 @@ Command compare_command(CLI::App& app, const GlobalOptions& globals) {
       "  textonbench --results after run lectures2022/rpn_adsn\n"
       "  textonbench compare before after\n"
       "Runs are paired by what they compute. The change is relative (or absolute, without %), its interval that\n"
-      "of the two-level bootstrap over exemplars and runs; inside the margin it is the same. Noise alone\n"
-      "makes something worse in fewer than 5 % of comparisons. Exit status 1: something is worse.");
+      "of the two-level bootstrap over exemplars and runs; inside the margin it is the same. Tests\n"
+      "share an error rate of 5 %. Exit status 1: something is worse.");
   return {command, [arguments, &globals] { return run_comparison(*arguments, globals); }};
 }
 

@@ -18,8 +18,8 @@ constexpr int unusable_input = 2;
 
 std::string version_text() {
   const nlohmann::ordered_json p = textonbench::provenance();
-  return fmt::format("textonbench {} (code {}, commit {})", p["version"].get<std::string>(),
-                     p["code_version"].get<std::string>(), p["git_commit"].get<std::string>());
+  return fmt::format("textonbench {} (commit {}{})", p["version"].get<std::string>(),
+                     p["git_commit"].get<std::string>(), p["git_dirty"] == true ? ", changed" : "");
 }
 
 int run(int argc, char** argv) {

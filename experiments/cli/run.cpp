@@ -84,7 +84,8 @@ class TimeEstimate {
     const std::size_t estimated = plan.runs.size() - reused_ - unknown_;
     std::string text = fmt::format("{} reused", reused_);
     if (estimated > 0) {
-      text += fmt::format("; {} more take about {} with --jobs {}", estimated, readable_duration(seconds(jobs)), jobs);
+      text += fmt::format("; {} in about {} with --jobs {}", estimated, readable_duration(std::max(1.0, seconds(jobs))),
+                          jobs);
     }
     if (unknown_ > 0) {
       text += fmt::format("; the time of {} is unknown: no record of {} yet", unknown_, fmt::join(methods_, ", "));
@@ -119,8 +120,8 @@ int explain_plan(const Plan& plan, const RunCommandOptions& options, const Histo
   if (options.json) {
     print_json({{"planned", plan.runs.size()}, {"reused", reused}, {"runs", runs}});
   } else {
-    fmt::print("{} runs planned, {} to reuse, {} to run; none executed (--explain)\n", plan.runs.size(), reused,
-               plan.runs.size() - reused);
+    fmt::print("{} run{} planned, {} to reuse, {} to run; none executed (--explain)\n", plan.runs.size(),
+               plan.runs.size() == 1 ? "" : "s", reused, plan.runs.size() - reused);
   }
   return 0;
 }
@@ -148,7 +149,8 @@ int show_plan(const Plan& plan, const RunCommandOptions& options, const TimeEsti
   rows.reserve(counts.size());
   for (const auto& [key, count] : counts) rows.push_back({key.first, key.second, std::to_string(count)});
   print_table({{"METHOD"}, {"EXEMPLAR"}, {"RUNS", Align::right}}, rows);
-  fmt::print("{} runs planned, none executed (--dry-run); {}\n", plan.runs.size(), estimate.text(plan, options.jobs));
+  fmt::print("{} run{} planned, none executed (--dry-run); {}\n", plan.runs.size(), plan.runs.size() == 1 ? "" : "s",
+             estimate.text(plan, options.jobs));
   return 0;
 }
 

@@ -54,6 +54,26 @@ addEventListener("load", () => {
 });
 </script>)";
 
+/// Claims: a verdict button and the filter hide rows, and a record's link leads to the report.
+constexpr const char* claims_reader = R"(<script>
+"use strict";
+addEventListener("error", (event) => document.body.dataset.error = event.message);
+addEventListener("load", () => {
+  const told = document.body.dataset;
+  const shown = () => [...document.querySelectorAll("tr.claim")].filter((row) => row.offsetParent !== null);
+  told.all = shown().length;
+  const button = document.querySelector("button.verdict.not-run");
+  button.click();
+  told.unrun = shown().every((row) => row.dataset.verdict === "not-run") && shown().length > 0;
+  button.click();
+  const filter = document.getElementById("claim-filter");
+  filter.value = "Rayleigh";
+  filter.dispatchEvent(new Event("input"));
+  told.found = shown().map((row) => row.id).join(" ");
+  told.done = true;
+});
+</script>)";
+
 std::string chromium() {
   for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {
     if (std::system(("command -v " + std::string(name) + " >/dev/null 2>&1").c_str()) == 0) return name;
@@ -133,6 +153,17 @@ columns = [{run = "both", picture = "exemplar", label = "Input", method = "rpn"}
   EXPECT_EQ(seen.attribute("repeated"), "true") << seen.attribute("number");
   EXPECT_THAT(seen.attribute("command"), HasSubstr("textonbench measure"));
   EXPECT_EQ(seen.attribute("viewer"), "true");
+
+  std::string ledger = content_of(report / "claims.html");
+  ledger.insert(ledger.rfind("</body>"), claims_reader);
+  std::ofstream(report / "read_claims.html") << ledger;
+  const Visit claims = visit(browser, report / "read_claims.html", folder.path());
+  EXPECT_THAT(claims.console, Not(HasSubstr("CONSOLE")));
+  EXPECT_EQ(claims.attribute("error"), "");
+  ASSERT_EQ(claims.attribute("done"), "true") << claims.console;
+  EXPECT_GE(std::stoi(claims.attribute("all")), 163);
+  EXPECT_EQ(claims.attribute("unrun"), "true");
+  EXPECT_THAT(claims.attribute("found"), HasSubstr("S03"));
 
   // The same page with a broken script is caught.
   std::ofstream(report / "broken.html") << page.replace(page.rfind("</body>"), 0, "<script>missing();</script>");

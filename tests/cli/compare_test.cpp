@@ -81,6 +81,23 @@ TEST_F(CompareProgram, BaselineIsUpdatedAndComparedWith) {
   EXPECT_THAT(migrate.err, AllOf(HasSubstr("schema 2"), HasSubstr("baseline update --reason")));
 }
 
+TEST_F(CompareProgram, DamagedClaimsLeaveTheBaselineAsItWas) {
+  write("results", 0.5);
+  ASSERT_EQ(start({"baseline", "update", "--reason", "first numbers"}).status, 0);
+  const std::filesystem::path baseline = folder_.path() / "results/baseline";
+  const std::string before = content_of(baseline / "records.jsonl");
+  write("results", 0.6);
+  const std::filesystem::path home = folder_.path() / "home";
+  std::filesystem::create_directories(home);
+  std::filesystem::copy(TEXTONBENCH_SOURCE_DIR "/configs", home / "configs", std::filesystem::copy_options::recursive);
+  std::ofstream(home / "configs/claims/bad.toml") << "paper = \"P\"\n[[claims]]\nid = 7\n";
+  const Outcome refused = run_program({"baseline", "update", "--reason", "more"},
+                                      {.folder = folder_.path(), .environment = {{"TEXTONBENCH_HOME", home.string()}}});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("bad.toml:3:"));
+  EXPECT_EQ(content_of(baseline / "records.jsonl"), before);
+}
+
 TEST_F(CompareProgram, ExportsBothFormats) {
   write("results", 0.5);
   EXPECT_EQ(start({"export"}).status, 2);

@@ -119,6 +119,7 @@ TEST(Compare, NoiseAloneRaisesFewFalseAlarms) {
     regressions += comparison.regressions() > 0 ? 1 : 0;
   }
   RecordProperty("alarms", alarms);
+  RecordProperty("regressions", regressions);
   // At a rate of 5 % a comparison, P(more than 20 of 200) = 0.1 %.
   EXPECT_LE(alarms, 20);
   EXPECT_LE(regressions, alarms);

@@ -1,14 +1,19 @@
 #include "experiments/provenance.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <optional>
-#include <set>
+#include <string>
+#include <vector>
 
+#include "experiments/metrics/metric.h"
+#include "methods/method.h"
 #include "tests/temporary_folder.h"
 
 namespace textonbench::provenance_test {
@@ -40,9 +45,9 @@ TEST(ProvenanceTest, TellsCodeMachineAndLibraries) {
   const nlohmann::ordered_json p = provenance();
   std::vector<std::string> keys;
   for (const auto& [key, value] : p.items()) keys.push_back(key);
-  EXPECT_THAT(
-      keys, testing::ElementsAre("version", "code_version", "git_commit", "git_dirty", "git_diff", "compiler", "flags",
-                                 "build_type", "cpu", "simd", "cores", "threads", "os", "libraries", "fft_plans"));
+  EXPECT_THAT(keys,
+              testing::ElementsAre("version", "git_commit", "git_dirty", "git_diff", "compiler", "flags", "build_type",
+                                   "cpu", "simd", "cores", "threads", "os", "libraries", "fft_plans"));
   EXPECT_THAT(p["version"].get<std::string>(), MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
   EXPECT_THAT(p["git_commit"].get<std::string>(), MatchesRegex("[0-9a-f]{40}|unknown"));
   EXPECT_TRUE(p["git_dirty"].is_boolean() || p["git_dirty"] == "unknown");
@@ -57,7 +62,20 @@ TEST(ProvenanceTest, TellsCodeMachineAndLibraries) {
   }
 }
 
-TEST(ProvenanceTest, CodeVersionIsAShortHash) { EXPECT_THAT(code_version(), MatchesRegex("[0-9a-f]{16}")); }
+TEST(ProvenanceTest, EveryMethodAndMetricHasAVersion) {
+  for (const MethodEntry& method : method_catalog()) {
+    EXPECT_THAT(std::string(method_version(method.name)), MatchesRegex("[0-9a-f]{16}")) << method.name;
+  }
+  for (const MetricEntry& metric : metric_catalog()) {
+    EXPECT_EQ(metric.source.empty(), metric.level == MetricLevel::cost) << metric.name;
+    if (metric.source.empty()) continue;
+    EXPECT_THAT(std::string(source_version(fmt::format("experiments/metrics/{}", metric.source))),
+                MatchesRegex("[0-9a-f]{16}"))
+        << metric.name;
+  }
+  EXPECT_THROW(source_version("experiments/runner"), std::invalid_argument);
+  EXPECT_THROW(method_version("rp"), std::invalid_argument);
+}
 
 /// Sets an environment variable for the time of a test.
 class ScopedVariable {
@@ -101,9 +119,14 @@ TEST(HomeFolderTest, AVariableThatNamesAnotherFolderIsAnError) {
 class BuildInfoTest : public testing::Test {
  protected:
   void SetUp() override {
-    write("methods/a.cpp", "int a;\n");
-    write("experiments/metrics/m.cpp", "int m;\n");
-    write("experiments/execute.cpp", "int e;\n");
+    write("methods/base/image.h", "int i();\n");
+    write("methods/base/pixels.cpp", "#include \"methods/base/image.h\"\n");
+    write("methods/spectral/a.cpp", "#include <map>\n\n#include \"methods/base/image.h\"\n");
+    write("methods/spectral/b.cpp", "int b;\n");
+    write("experiments/metrics/m.cpp", "#include \"experiments/runner.h\"\n");
+    write("experiments/execute.cpp", "#include \"methods/base/image.h\"\n");
+    write("experiments/procedural_exemplars.cpp", "int p;\n");
+    write("experiments/runner.h", "int r();\n");
     write("experiments/runner.cpp", "int r;\n");
   }
 
@@ -138,17 +161,42 @@ class BuildInfoTest : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(BuildInfoTest, TheCodeVersionFollowsWhatDecidesNumbersOnly) {
-  const std::string first = value_of("code_version");
-  EXPECT_THAT(first, MatchesRegex("[0-9a-f]{16}"));
-  write("experiments/runner.cpp", "int other;\n");
-  EXPECT_EQ(value_of("code_version"), first);
-  std::set<std::string> versions{first};
-  for (const char* name :
-       {"methods/a.cpp", "methods/new/b.h", "experiments/metrics/m.cpp", "experiments/execute.cpp"}) {
-    write(name, "int other;\n");
-    EXPECT_TRUE(versions.insert(value_of("code_version")).second) << name;
-  }
+TEST_F(BuildInfoTest, ASourcesVersionFollowsWhatItIncludes) {
+  const std::vector<std::string> sources{"methods/spectral/a", "methods/spectral/b", "experiments/metrics/m",
+                                         "experiments/execute", "experiments/procedural_exemplars"};
+  const auto versions = [&] {
+    value_of("version");
+    const std::string header = text_of("build_info.h");
+    std::map<std::string, std::string> found;
+    for (const std::string& source : sources) {
+      const std::string start = "{\"" + source + "\", \"";
+      const std::size_t at = header.find(start);
+      found[source] = at == std::string::npos ? "none" : header.substr(at + start.size(), 16);
+    }
+    return found;
+  };
+  std::map<std::string, std::string> before = versions();
+  for (const auto& [source, version] : before) EXPECT_THAT(version, MatchesRegex("[0-9a-f]{16}")) << source;
+  const auto changed_by = [&](const std::string& file, const std::string& text) {
+    write(file, text);
+    std::map<std::string, std::string> after = versions();
+    std::vector<std::string> changed;
+    for (const std::string& source : sources) {
+      if (after[source] != before[source]) changed.push_back(source);
+    }
+    before = after;
+    return changed;
+  };
+  using testing::ElementsAre;
+  EXPECT_THAT(changed_by("methods/spectral/b.cpp", "int other;\n"), ElementsAre("methods/spectral/b"));
+  EXPECT_THAT(changed_by("methods/base/image.h", "long i();\n"),
+              ElementsAre("methods/spectral/a", "experiments/execute"));
+  EXPECT_THAT(changed_by("methods/base/pixels.cpp", "#include \"methods/base/image.h\"\nint other;\n"),
+              ElementsAre("methods/spectral/a", "experiments/execute"))
+      << "a source whose first include is a header defines what that declares";
+  EXPECT_THAT(changed_by("experiments/metrics/m.cpp", "int other;\n"), ElementsAre("experiments/metrics/m"));
+  EXPECT_THAT(changed_by("experiments/runner.h", "int other;\n"), testing::IsEmpty());
+  EXPECT_THAT(changed_by("methods/catalog.cpp", "#include \"methods/spectral/a.h\"\n"), testing::IsEmpty());
 }
 
 TEST_F(BuildInfoTest, AnUnchangedHeaderIsNotTouched) {

@@ -84,7 +84,8 @@ TEST(RunSpecTest, NamesTheBadKey) {
 
 TEST(RunSpecTest, TheIdHashesSpecAndCode) {
   const RunSpec spec = example();
-  EXPECT_EQ(run_id(spec), sha256(to_json(spec).dump() + "\ncode " + code_version()).substr(0, 16));
+  EXPECT_EQ(run_id(spec),
+            sha256(to_json(spec).dump() + "\ncode " + code_version(spec.method, spec.metrics)).substr(0, 16));
   EXPECT_EQ(run_id(spec).find_first_not_of("0123456789abcdef"), std::string::npos);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/result_set.h"
+#include "experiments/run_spec.h"
 
 namespace textonbench {
 
@@ -21,9 +22,11 @@ struct SyntheticRun {
 
 inline Record make_synthetic_record(const SyntheticRun& run) {
   Record metrics = Record::object(), names = Record::array();
+  std::vector<std::string> measured;
   for (const auto& [name, value] : run.metrics) {
     metrics[name] = {{"value", value}, {"stderr", nullptr}, {"unit", "1"}, {"floor", nullptr}};
     names.push_back(name);
+    measured.push_back(name);
   }
   Record record = {
       {"schema", 1}, {"id", run.method + "_" + run.exemplar + "_" + std::to_string(run.seed)}, {"status", run.status}};
@@ -38,8 +41,10 @@ inline Record make_synthetic_record(const SyntheticRun& run) {
   record["pictures"] = Record::object();
   record["time"] = {
       {"wall_seconds", 0.5}, {"cpu_seconds", 0.4}, {"peak_bytes", 1000}, {"finished", "2024-01-02T03:04:05Z"}};
-  record["provenance"] = {{"version", "0.1.0"},   {"code_version", "c0de"}, {"git_commit", "abc"}, {"git_dirty", false},
-                          {"compiler", "GNU 12"}, {"cpu", run.cpu},         {"cores", 4},          {"threads", 2}};
+  record["provenance"] = {{"version", "0.1.0"},   {"code_version", code_version(run.method, measured)},
+                          {"git_commit", "abc"},  {"git_dirty", false},
+                          {"compiler", "GNU 12"}, {"cpu", run.cpu},
+                          {"cores", 4},           {"threads", 2}};
   return record;
 }
 

@@ -9,10 +9,10 @@
 #include <string>
 
 #include "experiments/config.h"
+#include "experiments/files.h"
 #include "experiments/plan.h"
 #include "experiments/record.h"
 #include "methods/base/image_io.h"
-#include "paper_figures/files.h"
 
 namespace textonbench {
 

@@ -116,7 +116,7 @@ TEST_F(PanelTest, IsDrawnAgainOnlyWhenItsInputsChange) {
   add_panel({column("sample", "RPN")});
   make_figures(config_, plan_, results_);
   const std::string first = read_file(figure_file("panel.png"));
-  write_file(figure_file("panel.png"), "as it was");
+  write_atomically(figure_file("panel.png"), "as it was");
   make_figures(config_, plan_, results_);
   EXPECT_EQ(read_file(figure_file("panel.png")), "as it was");
 

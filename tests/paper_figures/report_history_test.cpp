@@ -13,7 +13,7 @@ using testing::Not;
 class HistoryTest : public FiguresTest {
  protected:
   std::string page(const std::string& lines) const {
-    write_file(folder_ / "history.jsonl", lines);
+    write_atomically(folder_ / "history.jsonl", lines);
     return history_html(folder_ / "history.jsonl");
   }
 };

@@ -145,7 +145,7 @@ TEST_F(ReportTest, WorksWithoutAnyRecord) {
 
 TEST_F(ReportTest, ShowsBenchmarksWithTheirCounters) {
   fill_everything();
-  write_file(folder_ / "benchmarks.json", R"json({
+  write_atomically(folder_ / "benchmarks.json", R"json({
     "context": {"num_cpus": 2, "mhz_per_cpu": 3000, "cpu_scaling_enabled": false, "library_build_type": "release",
                 "host_name": "secret", "date": "2022-01-01", "caches": [{"type": "Data", "level": 1, "size": 32768}]},
     "benchmarks": [

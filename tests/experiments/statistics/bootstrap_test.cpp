@@ -1,5 +1,6 @@
 #include "experiments/statistics/bootstrap.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,18 +40,27 @@ double coverage(const Design& design, const Law& law) {
   return static_cast<double>(covered) / trials;
 }
 
+/// The numbers of bootstrap.h: experiments_tests --gtest_output=json:FILE writes them.
+void record(const Design& design, const char* law, double share) {
+  testing::Test::RecordProperty(
+      fmt::format("{}_{}x{}_{}_{}", law, design.exemplars, design.seeds, design.between, design.within),
+      fmt::format("{:.1f} %", 100 * share));
+}
+
 TEST(Bootstrap, NinetyFivePercentIntervalCoversAsOften) {
   for (const Design& design : {Design{13, 4, 1, 0.5}, Design{13, 4, 0.2, 2}, Design{13, 1, 1, 1}, Design{6, 4, 1, 0.5},
                                Design{3, 4, 1, 0.5}, Design{1, 8, 0, 1}}) {
     const double share = coverage(design, gaussian);
+    record(design, "gaussian", share);
     EXPECT_GE(share, 0.93) << design.exemplars << " x " << design.seeds << ", within " << design.within;
     EXPECT_LE(share, 0.97) << design.exemplars << " x " << design.seeds << ", within " << design.within;
   }
 }
 
 TEST(Bootstrap, CoversSkewedDataToo) {
-  for (const Design& design : {Design{13, 4, 1, 0.5}, Design{13, 4, 0.2, 2}, Design{20, 4, 1, 1}}) {
+  for (const Design& design : {Design{13, 4, 1, 0.5}, Design{13, 4, 0.2, 2}, Design{20, 10, 1, 1}}) {
     const double share = coverage(design, skewed);
+    record(design, "skewed", share);
     EXPECT_GE(share, 0.93) << design.exemplars << " x " << design.seeds << ", within " << design.within;
     EXPECT_LE(share, 0.97) << design.exemplars << " x " << design.seeds << ", within " << design.within;
   }

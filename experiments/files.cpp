@@ -1,10 +1,12 @@
-#include "experiments/atomic_file.h"
+#include "experiments/files.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <system_error>
 
@@ -28,8 +30,17 @@ int write_and_sync(const std::filesystem::path& file, std::string_view text) {
 
 }  // namespace
 
+std::string read_file(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || !std::filesystem::is_regular_file(file)) {
+    throw std::runtime_error(fmt::format("{}: cannot be read", file.string()));
+  }
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 void write_atomically(const std::filesystem::path& file, std::string_view text) {
-  const std::filesystem::path draft = file.parent_path() / fmt::format(".{}.{}", file.filename().string(), ::getpid());
+  const std::filesystem::path draft =
+      file.parent_path() / fmt::format(".draft_{}_{}", ::getpid(), file.filename().string());
   std::error_code error(write_and_sync(draft, text), std::generic_category());
   if (!error) std::filesystem::rename(draft, file, error);
   if (!error) return;
@@ -37,6 +48,11 @@ void write_atomically(const std::filesystem::path& file, std::string_view text) 
   std::filesystem::remove(draft, ignored);
   throw std::runtime_error(
       fmt::format("{}: cannot be written (what was there is kept): {}", file.string(), error.message()));
+}
+
+std::filesystem::path with_suffix(const std::filesystem::path& stem, std::string_view suffix) {
+  std::filesystem::path path = stem;
+  return path += suffix;
 }
 
 }  // namespace textonbench
