@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "paper_figures/anchors.h"
 #include "paper_figures/number_format.h"
@@ -95,6 +96,17 @@ Json number_cell(const Json& row, const std::string& key, const std::string& uni
   return {{"value", format_number(value) + unit}, {"sort", format_exact(value)}};
 }
 
+/// The name without what Google Benchmark adds on how it timed: "synthesis/rpn/256/iterations:60/manual_time".
+std::string benchmark_name(const Json& row) {
+  std::istringstream parts(row.value("run_name", row.value("name", std::string())));
+  std::string name;
+  for (std::string part; std::getline(parts, part, '/');) {
+    if (part.find(':') != std::string::npos || part.ends_with("_time")) continue;
+    name += (name.empty() ? "" : "/") + part;
+  }
+  return name;
+}
+
 std::string machine_of(const Json& context) {
   std::string text = fmt::format("{} processors", context.value("num_cpus", 0));
   if (const int mhz = context.value("mhz_per_cpu", 0); mhz > 0) text += fmt::format(" at {} MHz", mhz);
@@ -123,7 +135,7 @@ Json speed_view(const Json& document) {
     const std::string unit = " " + row.value("time_unit", std::string("ns"));
     Json cells{number_cell(row, "real_time", unit), number_cell(row, "cpu_time", unit)};
     for (const std::string& counter : counters) cells.push_back(number_cell(row, counter, ""));
-    views.push_back({{"name", row.value("run_name", row.value("name", std::string()))},
+    views.push_back({{"name", benchmark_name(row)},
                      {"error", row.value("error_occurred", false) ? row["error_message"] : Json(nullptr)},
                      {"cells", std::move(cells)}});
   }
@@ -161,7 +173,8 @@ std::string environment_html(const std::vector<ReportRun>& runs) {
   std::vector<std::pair<Record, std::size_t>> variants;
   for (const ReportRun& entry : runs) {
     if (!entry.run.record) continue;
-    const Record provenance = entry.run.record->value("provenance", Record::object());
+    Record provenance = entry.run.record->value("provenance", Record::object());
+    provenance.erase("code_version");  // of the method and metrics of a run, not of where it ran
     const auto known = std::ranges::find(variants, provenance, &std::pair<Record, std::size_t>::first);
     if (known == variants.end())
       variants.emplace_back(provenance, 1);

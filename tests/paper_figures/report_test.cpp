@@ -153,12 +153,13 @@ TEST_F(ReportTest, ShowsBenchmarksWithTheirCounters) {
        "cpu_time": 80.0, "time_unit": "ms", "ratio_to_floor": 1.5},
       {"name": "rpn/1024_median", "run_name": "rpn/1024", "run_type": "aggregate", "aggregate_name": "median",
        "real_time": 70.0, "cpu_time": 60.0, "time_unit": "ms", "ratio_to_floor": 1.18},
-      {"name": "adsn/4096", "run_name": "adsn/4096", "run_type": "iteration", "real_time": 5.0, "cpu_time": 4.0,
+      {"name": "adsn/4096/iterations:9/manual_time", "run_name": "adsn/4096/iterations:9/manual_time", "run_type": "iteration", "real_time": 5.0, "cpu_time": 4.0,
        "time_unit": "s"}]})json");
   const std::string page = write();
   EXPECT_THAT(page, AllOf(HasSubstr("Ratio to floor"), HasSubstr("1.180"), HasSubstr("70.00 ms"), HasSubstr("5.000 s"),
                           HasSubstr("2 processors at 3000 MHz")));
   EXPECT_THAT(page, AllOf(Not(HasSubstr("90.00 ms")), Not(HasSubstr("secret"))));
+  EXPECT_THAT(page, AllOf(HasSubstr(">adsn/4096<"), Not(HasSubstr("manual_time"))));
   EXPECT_THAT(speed_html("{\"context\": 3"), HasSubstr("not what Google Benchmark writes"));
   EXPECT_EQ(speed_html(""), "");
 }
