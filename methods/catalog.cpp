@@ -7,11 +7,12 @@
 #include "methods/method.h"
 #include "methods/spectral/adsn.h"
 #include "methods/spectral/rpn.h"
+#include "methods/spot/dsn.h"
 
 namespace textonbench {
 
 std::span<const MethodEntry> method_catalog() {
-  static const std::vector<MethodEntry> entries = {rpn_entry(), adsn_entry()};
+  static const std::vector<MethodEntry> entries = {rpn_entry(), adsn_entry(), dsn_entry()};
   return entries;
 }
 

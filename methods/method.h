@@ -14,6 +14,7 @@
 #include "methods/base/image.h"
 #include "methods/base/params.h"
 #include "methods/base/random.h"
+#include "methods/base/texton.h"
 
 namespace textonbench {
 
@@ -64,6 +65,8 @@ class Model {
   /// domain that MethodEntry::refuses would refuse.
   virtual Image synthesize(const Domain& domain, Seed seed) const = 0;
   virtual const Gaussian* gaussian() const { return nullptr; }
+  /// The kernels that the model sums, when it is a spot noise.
+  virtual const Texton* texton() const { return nullptr; }
   virtual Footprint footprint(const Domain& domain) const = 0;
 };
 

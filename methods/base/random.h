@@ -46,6 +46,9 @@ Seed derive(Seed seed, std::uint64_t index);
 /// The value depends on (stream, row, first + i) alone, not on how a row is cut into calls.
 void fill_normal(const Stream& stream, std::uint64_t row, std::uint64_t first, std::span<float> out);
 
+/// out[i] = white noise of the plane at the whole point (x + i, y), any point of Z².
+void fill_plane_normal(const Stream& stream, std::int64_t x, std::int64_t y, std::span<float> out);
+
 /// out[i] = unit complex number exp(iθ), θ uniform, number first + i of the row.
 void fill_phasor(const Stream& stream, std::uint64_t row, std::uint64_t first, std::span<std::complex<float>> out);
 

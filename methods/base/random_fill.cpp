@@ -121,6 +121,11 @@ void fill_normal(const Stream& stream, std::uint64_t row, std::uint64_t first, s
        [&](std::uint64_t group, int count, float* to) { normal_groups(stream.key(), row, group, count, to); });
 }
 
+void fill_plane_normal(const Stream& stream, std::int64_t x, std::int64_t y, std::span<float> out) {
+  // Moved by 2^63 so that a row's numbers are consecutive across x = 0.
+  fill_normal(stream, static_cast<std::uint64_t>(y), static_cast<std::uint64_t>(x) + (std::uint64_t{1} << 63U), out);
+}
+
 void fill_phasor(const Stream& stream, std::uint64_t row, std::uint64_t first, std::span<std::complex<float>> out) {
   fill(first, out, [&](std::uint64_t group, int count, std::complex<float>* to) {
     phasor_groups(stream.key(), row, group, count, reinterpret_cast<float*>(to));

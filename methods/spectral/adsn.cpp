@@ -3,17 +3,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "methods/base/convolution.h"
 #include "methods/base/parallel.h"
 #include "methods/spectral/hermitian_noise.h"
 
 namespace textonbench {
 namespace {
-
-/// White noise of the plane at whole coordinates: row y, number x. Moved by 2^63 so that a row's numbers are
-/// consecutive across x = 0.
-void fill_plane_noise(const Stream& stream, std::int64_t x, std::int64_t y, std::span<float> out) {
-  fill_normal(stream, static_cast<std::uint64_t>(y), static_cast<std::uint64_t>(x) + (std::uint64_t{1} << 63U), out);
-}
 
 class Adsn final : public Model, public Gaussian {
  public:
@@ -40,17 +35,8 @@ class Adsn final : public Model, public Gaussian {
       return model_.spectrum;
     }
     // The spot wrapped around the grid has the plane's spectrum at the grid's frequencies.
-    const Image spot = inverse_fft(model_.spectrum.factors.front());
-    Image wrapped(grid, spot.channels());
-    for (int c = 0; c < spot.channels(); ++c) {
-      for (int y = 0; y < spot.height(); ++y) {
-        for (int x = 0; x < spot.width(); ++x) {
-          wrapped.at(c, x % grid.width, y % grid.height) += spot.at(c, x, y);
-        }
-      }
-    }
     CrossSpectrum result;
-    result.factors.push_back(forward_fft(wrapped));
+    result.factors.push_back(forward_fft(wrap(inverse_fft(model_.spectrum.factors.front()), grid)));
     return result;
   }
 
@@ -61,7 +47,7 @@ class Adsn final : public Model, public Gaussian {
       return {bytes, spectral_operations(channels, size())};
     }
     // One transform of the noise, one of the padded spot and one back for each channel.
-    const Extent padded = padded_size(domain);
+    const Extent padded = convolution_grid(size(), domain.size);
     const double transforms = (2 * channels + 1) * 2.5 * std::log2(static_cast<double>(padded.area())) + 3 * channels;
     return {bytes, transforms * static_cast<double>(padded.area()) / static_cast<double>(domain.size.area())};
   }
@@ -69,54 +55,15 @@ class Adsn final : public Model, public Gaussian {
  private:
   Extent size() const { return model_.spectrum.grid(); }
 
-  Extent padded_size(const Domain& domain) const {
-    return {good_fft_size(domain.size.width + size().width - 1), good_fft_size(domain.size.height + size().height - 1)};
-  }
-
   Image window_of_plane(const Domain& domain, const Stream& stream) const {
     const Image spot = inverse_fft(model_.spectrum.factors.front());
-    const int left = spot.width() - 1;
-    const int top = spot.height() - 1;
-    const Extent padded = padded_size(domain);
-
     // Pixel x of the window needs the noise at x − spot.width() + 1 … x.
-    Image noise(padded, 1);
-    const auto x0 = static_cast<std::int64_t>(domain.origin.x) - left;
-    const auto y0 = static_cast<std::int64_t>(domain.origin.y) - top;
-    parallel_for(domain.size.height + top, [&](int y) {
-      fill_plane_noise(
-          stream, x0, y0 + y,
-          noise.row(0, y).first(static_cast<std::size_t>(domain.size.width) + static_cast<std::size_t>(left)));
-    });
-    const Spectrum noise_spectrum = forward_fft(noise);
-
-    Image padded_spot(padded, spot.channels());
-    for (int c = 0; c < spot.channels(); ++c) {
-      for (int y = 0; y < spot.height(); ++y) {
-        const auto row = spot.row(c, y);
-        std::copy(row.begin(), row.end(), padded_spot.row(c, y).begin());
-      }
-    }
-    Spectrum product = forward_fft(padded_spot);
-    for (int c = 0; c < spot.channels(); ++c) {
-      parallel_for(product.rows(), [&](int ky) {
-        const auto w = noise_spectrum.row(0, ky);
-        const auto p = product.row(c, ky);
-        for (std::size_t kx = 0; kx < p.size(); ++kx) {
-          p[kx] = {p[kx].real() * w[kx].real() - p[kx].imag() * w[kx].imag(),
-                   p[kx].real() * w[kx].imag() + p[kx].imag() * w[kx].real()};
-        }
-      });
-    }
-    Image sample = crop(inverse_fft(product), left, top, domain.size);
-    for (int c = 0; c < sample.channels(); ++c) {
-      const auto mean = static_cast<float>(model_.mean[static_cast<std::size_t>(c)]);
-      for (int y = 0; y < sample.height(); ++y) {
-        for (float& v : sample.row(c, y)) {
-          v += mean;
-        }
-      }
-    }
+    Image noise({domain.size.width + spot.width() - 1, domain.size.height + spot.height() - 1}, 1);
+    const auto x0 = static_cast<std::int64_t>(domain.origin.x) - (spot.width() - 1);
+    const auto y0 = static_cast<std::int64_t>(domain.origin.y) - (spot.height() - 1);
+    parallel_for(noise.height(), [&](int y) { fill_plane_normal(stream, x0, y0 + y, noise.row(0, y)); });
+    Image sample = convolve_valid({&spot, 1}, {&noise, 1});
+    add_constant(model_.mean, sample);
     return sample;
   }
 

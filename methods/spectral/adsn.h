@@ -9,7 +9,7 @@
 // torus.
 #pragma once
 
-#include "methods/spectral/spot.h"
+#include "methods/exemplar_spot.h"
 
 namespace textonbench {
 

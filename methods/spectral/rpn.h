@@ -6,7 +6,7 @@
 // phase noise"). Modulus, mean and sample covariance of every output are exactly those of p.
 #pragma once
 
-#include "methods/spectral/spot.h"
+#include "methods/exemplar_spot.h"
 
 namespace textonbench {
 

@@ -1,4 +1,4 @@
-#include "methods/spectral/spot.h"
+#include "methods/exemplar_spot.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// What RPN and ADSN share: the spot taken from an exemplar, and the domains they serve.
+// What methods that start from the exemplar's own spot share: taking it, and the domains that they serve.
 #pragma once
 
 #include <optional>
