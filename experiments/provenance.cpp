@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "experiments/build_info.h"
-#include "methods/base/fft.h"
+#include "methods/base/fft_plan.h"
 #include "methods/base/image_io.h"
 
 namespace textonbench {

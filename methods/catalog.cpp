@@ -7,12 +7,16 @@
 #include "methods/method.h"
 #include "methods/spectral/adsn.h"
 #include "methods/spectral/rpn.h"
+#include "methods/spot/canonical_texton.h"
 #include "methods/spot/dsn.h"
+#include "methods/spot/luminance_texton.h"
+#include "methods/spot/sot.h"
 
 namespace textonbench {
 
 std::span<const MethodEntry> method_catalog() {
-  static const std::vector<MethodEntry> entries = {rpn_entry(), adsn_entry(), dsn_entry()};
+  static const std::vector<MethodEntry> entries = {
+      rpn_entry(), adsn_entry(), dsn_entry(), canonical_texton_entry(), luminance_texton_entry(), sot_entry()};
   return entries;
 }
 

@@ -1,4 +1,4 @@
-// Two-dimensional real Fourier transforms. The only file pair that includes FFTW.
+// Two-dimensional real Fourier transforms.
 //
 // Normalisation, stated once: the forward transform is un-normalised,
 //
@@ -105,14 +105,5 @@ Image unnormalized_inverse_fft(Extent raster, int channels, const ColumnSource& 
 /// Smallest n >= minimum of the form 2^a 3^b 5^c 7^d, a size that FFTW handles well. Throws std::invalid_argument
 /// unless minimum is in [1, 2^30].
 int good_fft_size(int minimum);
-
-/// How FFTW chooses its algorithms. By default (`estimate`) plans depend on the size alone, so the same seed gives the
-/// same bits in every process. With the environment variable TEXTONBENCH_FFT_PLAN=measure plans are timed and their
-/// wisdom is kept in the user's cache folder ($XDG_CACHE_HOME or ~/.cache, textonbench/fftwf-wisdom): faster for
-/// awkward sizes, but the last bits may then change when the wisdom is deleted. Provenance records which was used.
-const char* fft_plan_rigor();
-
-/// Version string of the FFTW library in use.
-const char* fft_library_version();
 
 }  // namespace textonbench

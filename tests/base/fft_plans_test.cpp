@@ -9,6 +9,7 @@
 #include <string>
 
 #include "methods/base/fft.h"
+#include "methods/base/fft_plan.h"
 #include "tests/base/scratch_folder.h"
 
 namespace textonbench::fft_plans_test {

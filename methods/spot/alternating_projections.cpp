@@ -1,0 +1,248 @@
+#include "methods/spot/alternating_projections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstring>
+#include <functional>
+#include <stdexcept>
+
+#include "methods/base/box_fft.h"
+#include "methods/base/parallel.h"
+
+namespace textonbench {
+namespace {
+
+constexpr int width = BinBlock::width;
+using ColumnSums = std::array<double, width>;
+
+// Eight neighboring bins as they are stored, real and imaginary parts in turn, and one part of them.
+using Bins [[gnu::vector_size(64)]] = float;
+using Parts [[gnu::vector_size(32)]] = float;
+
+inline __attribute__((always_inline)) void load(const float* from, Parts& re, Parts& im) {
+  Bins bins;
+  std::memcpy(&bins, from, sizeof(bins));
+  re = __builtin_shufflevector(bins, bins, 0, 2, 4, 6, 8, 10, 12, 14);
+  im = __builtin_shufflevector(bins, bins, 1, 3, 5, 7, 9, 11, 13, 15);
+}
+
+/// Replaces the bins F of a block of columns by T s, and adds Σ |F − T s|² to the sum of each column. With the square
+/// of no difference of large numbers the sums are accurate however close the two are.
+template <std::size_t channels>
+inline __attribute__((always_inline)) void project_bins(const std::array<const float*, channels>& spot, int rows,
+                                                        const std::array<float*, channels>& texton, ColumnSums& sums) {
+  constexpr float smallest = 1e-36F;  // squares below are not normal numbers
+  for (int ky = 0; ky < rows; ++ky) {
+    const std::ptrdiff_t k = std::ptrdiff_t{ky} * 2 * width;
+    Parts t_re[channels];
+    Parts t_im[channels];
+    Parts f_re[channels];
+    Parts f_im[channels];
+    Parts re{};
+    Parts im{};
+    for (std::size_t c = 0; c < channels; ++c) {
+      load(spot[c] + k, t_re[c], t_im[c]);
+      load(texton[c] + k, f_re[c], f_im[c]);
+      re += t_re[c] * f_re[c] + t_im[c] * f_im[c];
+      im += t_re[c] * f_im[c] - t_im[c] * f_re[c];
+    }
+    const Parts norm = re * re + im * im;
+    Parts root;
+    for (int i = 0; i < width; ++i) {
+      root[i] = std::sqrt(norm[i]);
+    }
+    const Parts phase_re = norm < smallest ? Parts{} + 1.0F : re / root;
+    const Parts phase_im = norm < smallest ? Parts{} : im / root;
+    Parts distance{};
+    for (std::size_t c = 0; c < channels; ++c) {
+      const Parts new_re = t_re[c] * phase_re - t_im[c] * phase_im;
+      const Parts new_im = t_re[c] * phase_im + t_im[c] * phase_re;
+      const Parts off_re = f_re[c] - new_re;
+      const Parts off_im = f_im[c] - new_im;
+      distance += off_re * off_re + off_im * off_im;
+      const Bins bins = __builtin_shufflevector(new_re, new_im, 0, 8, 1, 9, 2, 10, 3, 11, 4, 12, 5, 13, 6, 14, 7, 15);
+      std::memcpy(texton[c] + k, &bins, sizeof(bins));
+    }
+    for (int i = 0; i < width; ++i) {
+      sums[static_cast<std::size_t>(i)] += static_cast<double>(distance[i]);
+    }
+  }
+}
+
+__attribute__((target_clones("default", "avx2", "avx512f"))) void project_gray(const float* spot, int rows,
+                                                                               float* texton, ColumnSums& sums) {
+  project_bins<1>({spot}, rows, {texton}, sums);
+}
+
+__attribute__((target_clones("default", "avx2", "avx512f"))) void project_color(const std::array<const float*, 3>& spot,
+                                                                                int rows,
+                                                                                const std::array<float*, 3>& texton,
+                                                                                ColumnSums& sums) {
+  project_bins<3>(spot, rows, texton, sums);
+}
+
+/// The projection of spectra onto those of modulus T, block of columns by block.
+class Projection {
+ public:
+  explicit Projection(const Spectrum& spot)
+      : layout_(spot), sums_(static_cast<std::size_t>(spot.columns() / width + 1)) {
+    blocks_.reserve(sums_.size());
+    for (int first = 0; first < spot.columns(); first += width) {
+      blocks_.emplace_back(spot.rows(), spot.channels());
+      for (int c = 0; c < spot.channels(); ++c) {
+        copy_columns(spot, c, first, blocks_.back());
+      }
+    }
+    for (int c = 0; c < spot.channels(); ++c) {
+      for (int ky = 0; ky < spot.rows(); ++ky) {
+        for (int kx = 0; kx < spot.columns(); ++kx) {
+          energy_ += spot.multiplicity(kx) * std::norm(std::complex<double>(spot.at(c, kx, ky)));
+        }
+      }
+    }
+  }
+
+  void operator()(int first, const BinBlock& block) {
+    for (int c = 0; c < layout_.channels() && first == 0; ++c) {
+      block.bins(c)[0] = 0;  // the error leaves ξ = 0 out
+    }
+    const auto number = static_cast<std::size_t>(first / width);
+    const auto in = [&](int c) { return reinterpret_cast<const float*>(blocks_[number].bins(c)); };
+    const auto out = [&](int c) { return reinterpret_cast<float*>(block.bins(c)); };
+    ColumnSums sums{};
+    if (layout_.channels() == 1) {
+      project_gray(in(0), layout_.rows(), out(0), sums);
+    } else {
+      project_color({in(0), in(1), in(2)}, layout_.rows(), {out(0), out(1), out(2)}, sums);
+    }
+    sums_[number] = sums;
+  }
+
+  /// RME of the spectrum that was projected last: its distance to its projection is that of the two models, since the
+  /// projection has modulus T and the phases that fit best.
+  double relative_error() const {
+    double sum = 0;
+    for (int kx = 0; kx < layout_.columns(); ++kx) {
+      sum +=
+          layout_.multiplicity(kx) * sums_[static_cast<std::size_t>(kx / width)][static_cast<std::size_t>(kx % width)];
+    }
+    return std::sqrt(sum / energy_);
+  }
+
+ private:
+  const Spectrum& layout_;
+  std::vector<BinBlock> blocks_;
+  std::vector<ColumnSums> sums_;  ///< squared distance of each column of each block
+  double energy_ = 0;
+};
+
+/// What a pixel of the box is multiplied by: the scale of the inverse transform in S, zero outside.
+std::vector<float> support_weights(const Support& support, Extent raster) {
+  const auto scale = static_cast<float>(1.0 / static_cast<double>(raster.area()));
+  std::vector<float> weights(support.inside.size());
+  std::ranges::transform(support.inside, weights.begin(), [&](std::uint8_t inside) { return inside != 0 ? scale : 0; });
+  return weights;
+}
+
+void restrict_to_support(const std::vector<float>& weights, Image& texton) {
+  for (int c = 0; c < texton.channels(); ++c) {
+    auto weight = weights.begin();
+    for (int y = 0; y < texton.height(); ++y) {
+      for (float& value : texton.row(c, y)) {
+        value *= *weight++;
+      }
+    }
+  }
+}
+
+void require_projectable(const GaussianModel& model, const Support& support, const Spectrum& start,
+                         const ProjectionOptions& options) {
+  const Spectrum& spot = model.spectrum.factors.front();
+  const auto require = [](bool met, const std::string& message) {
+    if (!met) {
+      throw std::invalid_argument("alternating projections: " + message);
+    }
+  };
+  require(model.spectrum.factors.size() == 1,
+          fmt::format("a model of {} factors, expected 1", model.spectrum.factors.size()));
+  require(spot.channels() == 1 || spot.channels() == 3, fmt::format("{} channels, expected 1 or 3", spot.channels()));
+  require(
+      start.raster() == spot.raster() && start.channels() == spot.channels(),
+      fmt::format("a start of {}x{}x{}, expected the exemplar's {}x{}x{}", start.raster().width, start.raster().height,
+                  start.channels(), spot.raster().width, spot.raster().height, spot.channels()));
+  require(support.pixels >= 1, "an empty support");
+  require(options.iterations >= 1, fmt::format("{} iterations, expected at least 1", options.iterations));
+  require(options.tolerance >= 0 && options.tolerance < 1,
+          fmt::format("tolerance {}, expected a number in [0, 1)", options.tolerance));
+}
+
+/// White Gaussian noise of one raster.
+Image white_noise(Extent extent, int channels, const Stream& stream) {
+  Image noise(extent, channels);
+  parallel_for(channels * extent.height, [&](int i) {
+    const int c = i / extent.height;
+    const int y = i % extent.height;
+    fill_normal(stream.child(static_cast<std::uint64_t>(c)), static_cast<std::uint64_t>(y), 0, noise.row(c, y));
+  });
+  return noise;
+}
+
+}  // namespace
+
+ProjectedTexton alternate_projections(const GaussianModel& model, const Support& support, const Spectrum& start,
+                                      const ProjectionOptions& options) {
+  require_projectable(model, support, start, options);
+  const Spectrum& spot = model.spectrum.factors.front();
+  const std::vector<float> weights = support_weights(support, spot.raster());
+  Projection projection(spot);
+
+  const BlockMap project = std::ref(projection);
+
+  Image kernel = unnormalized_inverse_fft_in_box(start, support.box, project);
+  restrict_to_support(weights, kernel);
+
+  ProjectionSummary summary;
+  std::vector<double>& rme = summary.rme;
+  for (summary.iterations = 1; summary.iterations < options.iterations; ++summary.iterations) {
+    const std::size_t known = rme.size();
+    if (options.tolerance > 0 && known >= 2 && rme[known - 2] - rme[known - 1] <= options.tolerance * rme[known - 2]) {
+      summary.stop = ProjectionSummary::Stop::tolerance;
+      break;
+    }
+    map_box_spectrum(kernel, spot.raster(), project);
+    restrict_to_support(weights, kernel);
+    rme.push_back(projection.relative_error());
+  }
+
+  ProjectedTexton result{{{}, support.pixels, model.mean}, std::move(summary)};
+  result.texton.kernels.push_back(kernel);
+  map_box_spectrum(kernel, spot.raster(), project);
+  result.summary.rme.push_back(projection.relative_error());
+  return result;
+}
+
+Spectrum random_phase_start(const Spectrum& spot, Seed seed) {
+  // Only the phases of the noise count: the first projection restores the modulus.
+  const Spectrum noise = forward_fft(white_noise(spot.raster(), 1, Stream(seed).child("random phase start")));
+  Spectrum start = spot;
+  for (int c = 0; c < spot.channels(); ++c) {
+    parallel_for(spot.rows(), [&](int ky) {
+      const auto phase = noise.row(0, ky);
+      const auto row = start.row(c, ky);
+      for (std::size_t kx = 0; kx < row.size(); ++kx) {
+        row[kx] *= phase[kx];
+      }
+    });
+  }
+  return start;
+}
+
+Spectrum white_start(const Spectrum& spot, Seed seed) {
+  return forward_fft(white_noise(spot.raster(), spot.channels(), Stream(seed).child("white start")));
+}
+
+}  // namespace textonbench

@@ -1,0 +1,25 @@
+// Method "sot": noise of a synthesis-oriented texton, EUSIPCO 2014.
+#pragma once
+
+#include "methods/exemplar_spot.h"
+#include "methods/spot/alternating_projections.h"
+#include "methods/spot/color_correction.h"
+
+namespace textonbench {
+
+enum class SotStart { random_phase, white };
+
+struct SotOptions {
+  SpotSource component = SpotSource::periodic_component;
+  SotStart start = SotStart::random_phase;
+  ProjectionOptions projections;
+  ColorCorrection color_correction = ColorCorrection::none;
+};
+
+/// Fits a texton of that support; the seed draws its start. Throws std::invalid_argument for an unusable exemplar, or
+/// as alternate_projections and correct_colors do.
+ProjectedTexton fit_sot(const Exemplar& exemplar, const Support& support, const SotOptions& options, Seed seed);
+
+MethodEntry sot_entry();
+
+}  // namespace textonbench
