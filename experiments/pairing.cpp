@@ -78,7 +78,9 @@ std::vector<RunPair> comparable_times(const MetricEntry& metric, const std::vect
   std::size_t most = 0;
   for (const auto& [thing, count] : counts) most = std::max(most, count);
   std::erase_if(same_machine, [&](const RunPair& run) { return counts[timed_thing(run)] < fewest_repetitions; });
-  *reason = same_machine.empty() ? fmt::format("{} repetition{}: expected at least {}", most, most == 1 ? "" : "s", fewest_repetitions) : "";
+  *reason = same_machine.empty()
+                ? fmt::format("{} repetition{}: expected at least {}", most, most == 1 ? "" : "s", fewest_repetitions)
+                : "";
   return same_machine;
 }
 

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <vector>
 
@@ -35,6 +37,41 @@ Image smooth_component(const PictureSource& source) {
   return difference;
 }
 
+/// The kernels in a square: zero is mid-gray, and four standard deviations of a kernel's values lie on either side.
+Image texton_picture(const PictureSource& source) {
+  const Texton* texton = source.model.texton();
+  if (texton == nullptr) throw std::invalid_argument("picture of the texton asked of a method that has none");
+  const int count = static_cast<int>(texton->kernels.size());
+  const int columns = static_cast<int>(std::ceil(std::sqrt(count))), rows = (count + columns - 1) / columns;
+  constexpr int gap = 2;
+  const Extent each = texton->extent();
+  Image picture({columns * (each.width + gap) - gap, rows * (each.height + gap) - gap}, texton->channels());
+  for (int c = 0; c < picture.channels(); ++c) {
+    for (int y = 0; y < picture.height(); ++y) std::ranges::fill(picture.row(c, y), 1.0F);
+  }
+  double energy = 0;
+  for (const Image& kernel : texton->kernels) {
+    for (int c = 0; c < kernel.channels(); ++c) {
+      for (int y = 0; y < kernel.height(); ++y) {
+        for (const float v : kernel.row(c, y)) energy += double{v} * v;
+      }
+    }
+  }
+  const double numbers = static_cast<double>(texton->support_pixels) * count * texton->channels();
+  const auto scale = static_cast<float>(energy > 0 ? 0.125 / std::sqrt(energy / numbers) : 0);
+  for (int k = 0; k < count; ++k) {
+    const Image& kernel = texton->kernels[static_cast<std::size_t>(k)];
+    const int left = k % columns * (each.width + gap), top = k / columns * (each.height + gap);
+    for (int c = 0; c < kernel.channels(); ++c) {
+      for (int y = 0; y < kernel.height(); ++y) {
+        std::ranges::transform(kernel.row(c, y), picture.row(c, top + y).begin() + left,
+                               [&](float v) { return 0.5F + scale * v; });
+      }
+    }
+  }
+  return picture;
+}
+
 constexpr std::array entries{
     PictureEntry{"sample", "Sample", sample<0>},
     PictureEntry{"sample_2", "Second sample", sample<1>},
@@ -51,6 +88,7 @@ constexpr std::array entries{
                  [](const PictureSource& s) { return phase_picture(s.target.exemplar.pixels); }},
     PictureEntry{"sample_modulus", "Modulus of the sample",
                  [](const PictureSource& s) { return modulus_picture(sample<0>(s)); }},
+    PictureEntry{"texton", "Texton", texton_picture},
     PictureEntry{"sample_phase", "Phase of the sample",
                  [](const PictureSource& s) { return phase_picture(sample<0>(s)); }},
 };

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "paper_figures/chart.h"
+#include "paper_figures/curve.h"
 #include "paper_figures/figure_kind.h"
 #include "paper_figures/front.h"
 #include "paper_figures/panel.h"
@@ -13,10 +14,11 @@
 namespace textonbench {
 namespace {
 
-constexpr std::array<FigureKind, 4> kinds{{
+constexpr std::array<FigureKind, 5> kinds{{
     {"panel", check_panel, write_panel, panel_html},
     {"table", check_table, write_table, table_html},
     {"chart", check_chart, write_chart, chart_html},
+    {"curve", check_curve, write_curve, curve_html},
     {"front", check_front, write_front, front_html},
 }};
 

@@ -55,8 +55,8 @@ std::string direction_of(const MetricEntry& metric) {
   return "";
 }
 
-std::vector<RunGroup> labelled_groups(const FigureInput& input) {
-  std::vector<RunGroup> groups = group_runs(input.runs);
+std::vector<RunGroup> labelled_groups(const FigureInput& input, const std::string& swept) {
+  std::vector<RunGroup> groups = group_runs(input.runs, swept);
   const auto labels = input.table.lists.find("labels");
   if (labels == input.table.lists.end()) return groups;
   for (RunGroup& group : groups) {

@@ -9,6 +9,8 @@
 #include "experiments/files.h"
 #include "methods/base/image_io.h"
 #include "paper_figures/anchors.h"
+#include "paper_figures/metric_choice.h"
+#include "paper_figures/number_format.h"
 #include "paper_figures/panel_image.h"
 #include "paper_figures/templates.h"
 
@@ -22,7 +24,9 @@ constexpr std::int64_t default_cell = 256;
 constexpr std::int64_t least_cell = 32;
 constexpr std::int64_t largest_cell = 2048;
 
-bool is_selector(const std::string& key) { return key != "run" && key != "picture" && key != "label" && key != "fit"; }
+bool is_selector(const std::string& key) {
+  return key != "run" && key != "picture" && key != "label" && key != "fit" && key != "note";
+}
 
 /// What a column may select a run by, as the text of the value.
 std::optional<std::string> attribute(const RunSpec& spec, const std::string& key) {
@@ -78,6 +82,22 @@ PictureFit fit_of(const FigureTable& table, std::size_t column) {
   return fit == "whole" ? PictureFit::whole : PictureFit::window;
 }
 
+/// Metric that the column's pictures are labelled with.
+const MetricEntry* note_of(const FigureInput& input, std::size_t column) {
+  const Column& keys = input.table.lists.at("columns")[column];
+  const auto found = keys.find("note");
+  if (found == keys.end()) return nullptr;
+  return &require_metric(input, fmt::format("columns[{}].note", column), to_string(found->second));
+}
+
+std::string note_text(const PanelCell& cell, const MetricEntry& metric) {
+  const Average number = cell.run != nullptr ? metric_of(*cell.run, metric.name) : Average{};
+  if (!number.value) return "";
+  const std::string name = metric.name == "rme" ? "RME" : std::string(metric.title);
+  const std::string unit = unit_of(metric);
+  return fmt::format("{} {}{}", name, format_number(*number.value, 3), unit.empty() ? "" : " " + unit);
+}
+
 std::int64_t cell_side(const FigureTable& table) {
   const auto found = table.options.find("cell");
   if (found == table.options.end()) return default_cell;
@@ -91,6 +111,12 @@ std::int64_t cell_side(const FigureTable& table) {
 
 }  // namespace
 
+bool PanelLayout::has_notes() const {
+  return std::ranges::any_of(rows, [](const PanelRow& row) {
+    return std::ranges::any_of(row.cells, [](const PanelCell& cell) { return !cell.note.empty(); });
+  });
+}
+
 PanelLayout lay_out_panel(const FigureInput& input) {
   const std::vector<Column>& columns = input.table.lists.at("columns");
   PanelLayout layout;
@@ -101,6 +127,7 @@ PanelLayout lay_out_panel(const FigureInput& input) {
     const SourcePlace& place = place_of(input.table, fmt::format("columns[{}]", i));
     const std::string picture = to_string(columns[i].at("picture"));
     const PictureFit fit = fit_of(input.table, i);
+    const MetricEntry* note = note_of(input, i);
     std::size_t answered = 0;
     for (PanelRow& row : layout.rows) {
       std::vector<const SelectedRun*> runs;
@@ -120,6 +147,7 @@ PanelLayout lay_out_panel(const FigureInput& input) {
       }
       answered += runs.size();
       row.cells.push_back(cell_of(runs, picture, fit));
+      if (note != nullptr) row.cells.back().note = note_text(row.cells.back(), *note);
     }
     if (answered == 0 && !layout.rows.empty()) {
       throw ConfigError(place, fmt::format("column {} (\"{}\") matches no run", i + 1, layout.columns[i]));
@@ -140,7 +168,7 @@ void check_panel(const FigureInput& input) {
   for (const SelectedRun& run : input.runs) {
     for (const auto& [name, value] : run.spec().params) params.insert(name);
   }
-  std::vector<std::string_view> selectors{"fit", "seed", "method", "periodic", "width", "height"};
+  std::vector<std::string_view> selectors{"fit", "note", "seed", "method", "periodic", "width", "height"};
   selectors.insert(selectors.end(), params.begin(), params.end());
   constexpr std::array<std::string_view, 3> required{"run", "picture", "label"};
   require_known_columns(input.table, "columns", required, selectors);
@@ -172,6 +200,7 @@ std::string panel_html(const FigureInput& input, PictureStore& pictures, const s
       const std::string absent = cell.picture ? std::string(lost_picture) : cell.absent;
       cells.push_back({{"label", layout.columns[i]},
                        {"exemplar", row.exemplar},
+                       {"note", cell.note.empty() ? Json(nullptr) : Json(cell.note)},
                        {"record", cell.run != nullptr ? Json(cell.run->planned->id) : Json(nullptr)},
                        {"picture", key ? Json(*key) : Json(nullptr)},
                        {"absent", key ? Json(nullptr) : Json(absent)}});

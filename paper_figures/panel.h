@@ -3,7 +3,8 @@
 // [[figures]] keys: `columns`, a list of tables with `run`, `picture` and `label`, and any of `seed`, `method`,
 // `periodic`, `width`, `height` and the method's parameters to tell one run from the others; `cell`, the side of a cell
 // in pixels (default 256). A picture larger than that is shown by its central part, or shrunk where the column says
-// fit = "whole" (for spectra); a smaller one is enlarged by a whole factor.
+// fit = "whole" (for spectra); a smaller one is enlarged by a whole factor. `note` of a column names a metric whose
+// value stands below its pictures.
 #pragma once
 
 #include <filesystem>
@@ -21,6 +22,7 @@ struct PanelCell {
   std::optional<Record> picture;     ///< {file, width, height}
   PictureFit fit = PictureFit::window;
   std::string absent;  ///< why there is no picture
+  std::string note{};  ///< "RME 0.513"; empty without one
 };
 
 /// Why a cell is empty whose record names a picture file that is not there.
@@ -34,6 +36,7 @@ struct PanelRow {
 struct PanelLayout {
   std::vector<std::string> columns;  ///< their captions
   std::vector<PanelRow> rows;
+  bool has_notes() const;
 };
 
 /// Throws ConfigError for a column that no run answers, or for which several runs answer on one exemplar.

@@ -51,10 +51,11 @@ void drop_last_character(std::string& text) {
   if (!text.empty()) text.pop_back();
 }
 
+/// OpenImageIO draws the characters of Latin-1 only, so the ellipsis is three periods.
 std::string shortened(std::string text, int font, int width) {
   if (text_extent(text, font).width <= width) return text;
-  while (!text.empty() && text_extent(text + "…", font).width > width) drop_last_character(text);
-  return text + "…";
+  while (!text.empty() && text_extent(text + "...", font).width > width) drop_last_character(text);
+  return text + "...";
 }
 
 std::vector<std::string> wrapped(const std::string& text, int font, int width) {
@@ -89,7 +90,7 @@ Image reason_picture(const std::string& reason, int side, int font) {
   std::vector<std::string> lines = wrapped(reason, font, side - 2 * inset);
   if (lines.size() > most_lines) {
     lines.resize(most_lines);
-    lines.back() = shortened(lines.back() + " …", font, side - 2 * inset);
+    lines.back() = shortened(lines.back() + " ...", font, side - 2 * inset);
   }
   int baseline = inset + font;
   for (const std::string& line : lines) {
@@ -118,6 +119,7 @@ PanelGeometry panel_geometry(const PanelLayout& layout, int cell) {
           .margin = std::max(4, cell / 24),
           .font = font,
           .header = font * 9 / 5,
+          .footer = layout.has_notes() ? font * 9 / 5 : 0,
           .rows = static_cast<int>(layout.rows.size()),
           .columns = static_cast<int>(layout.columns.size())};
 }
@@ -130,7 +132,7 @@ std::string panel_digest(const PanelLayout& layout, int cell, const ResultsFolde
     for (const PanelCell& contents : row.cells) {
       const std::string file = contents.picture ? contents.picture->value("file", std::string()) : "";
       const bool is_here = contents.picture && std::filesystem::is_regular_file(results.path() / file);
-      inputs.push_back({file, is_here, contents.fit == PictureFit::whole, contents.absent});
+      inputs.push_back({file, is_here, contents.fit == PictureFit::whole, contents.absent, contents.note});
     }
   }
   return sha256(inputs.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) + "\n";
@@ -153,6 +155,7 @@ Image draw_panel(const PanelLayout& layout, int cell, const ResultsFolder& resul
     const PanelCell& contents = layout.rows[static_cast<std::size_t>(row)].cells[static_cast<std::size_t>(column)];
     const Image picture = cell_picture(contents, cell, g.font, results);
     paste(sheet, picture, g.left(column) + (cell - picture.width()) / 2, g.top(row) + (cell - picture.height()) / 2);
+    if (!contents.note.empty()) paste(sheet, caption(contents.note, g.font, strip), g.left(column), g.top(row) + cell);
   });
   return sheet;
 }

@@ -8,10 +8,10 @@ namespace textonbench {
 
 /// Where the cells of a panel lie in its image.
 struct PanelGeometry {
-  int cell, gap, margin, font, header, rows, columns;
+  int cell, gap, margin, font, header, footer, rows, columns;
 
   int left(int column) const { return margin + header + column * (cell + gap); }
-  int top(int row) const { return margin + header + row * (cell + gap); }
+  int top(int row) const { return margin + header + row * (cell + footer + gap); }
   Extent extent() const { return {left(columns) - gap + margin, top(rows) - gap + margin}; }
 };
 PanelGeometry panel_geometry(const PanelLayout& layout, int cell);

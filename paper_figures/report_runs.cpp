@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json fact(const std::string& title, const std::string& value, const std::string& link = "") {
+Json run_fact(const std::string& title, const std::string& value, const std::string& link = "") {
   return {{"title", title}, {"value", value}, {"link", or_null(link)}};
 }
 
@@ -41,16 +41,16 @@ Json facts_of_result(const Record& record) {
   Json facts = Json::array();
   const Record time = record.value("time", Record::object());
   if (const double seconds = number_or_zero(time, "wall_seconds"); seconds > 0) {
-    facts.push_back(fact("Time", format_number(seconds) + " s"));
+    facts.push_back(run_fact("Time", format_number(seconds) + " s"));
   }
   if (const double bytes = number_or_zero(time, "peak_bytes"); bytes > 0) {
-    facts.push_back(fact("Peak memory", format_bytes(bytes)));
+    facts.push_back(run_fact("Peak memory", format_bytes(bytes)));
   }
   const Record provenance = record.value("provenance", Record::object());
   const bool is_dirty = provenance.value("git_dirty", Record()) == Record(true);
-  facts.push_back(fact("Commit", provenance.value("git_commit", std::string("unknown")) +
-                                     (is_dirty ? ", with uncommitted changes" : "")));
-  facts.push_back(fact("Code version", provenance.value("code_version", std::string("unknown"))));
+  facts.push_back(run_fact("Commit", provenance.value("git_commit", std::string("unknown")) +
+                                         (is_dirty ? ", with uncommitted changes" : "")));
+  facts.push_back(run_fact("Code version", provenance.value("code_version", std::string("unknown"))));
   return facts;
 }
 
@@ -58,13 +58,13 @@ Json facts_of(const ReportRun& entry) {
   const RunSpec& spec = entry.run.spec();
   const Record exemplar = entry.run.record ? entry.run.record->value("exemplar", Record()) : Record();
   Json facts = Json::array();
-  facts.push_back(fact("Config", entry.config->title, fmt::format("#{}", config_anchor(*entry.config))));
-  facts.push_back(fact("Method", spec.method));
-  if (!spec.params.empty()) facts.push_back(fact("Options", params_text(spec)));
-  facts.push_back(fact("Exemplar", spec.exemplar, fmt::format("#{}", exemplar_anchor(spec.exemplar))));
-  facts.push_back(fact("Size", size_text(spec, exemplar) + (spec.periodic ? ", periodic" : ", not periodic")));
-  facts.push_back(fact("Seed", std::to_string(spec.seed)));
-  facts.push_back(fact("Samples", std::to_string(spec.samples)));
+  facts.push_back(run_fact("Config", entry.config->title, fmt::format("#{}", config_anchor(*entry.config))));
+  facts.push_back(run_fact("Method", spec.method));
+  if (!spec.params.empty()) facts.push_back(run_fact("Options", params_text(spec)));
+  facts.push_back(run_fact("Exemplar", spec.exemplar, fmt::format("#{}", exemplar_anchor(spec.exemplar))));
+  facts.push_back(run_fact("Size", size_text(spec, exemplar) + (spec.periodic ? ", periodic" : ", not periodic")));
+  facts.push_back(run_fact("Seed", std::to_string(spec.seed)));
+  facts.push_back(run_fact("Samples", std::to_string(spec.samples)));
   if (!entry.run.record) return facts;
   for (Json& more : facts_of_result(*entry.run.record)) facts.push_back(std::move(more));
   return facts;

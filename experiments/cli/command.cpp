@@ -40,26 +40,34 @@ void set_examples(CLI::App& command, const std::string& examples) {
 
 void print_json(const nlohmann::ordered_json& document) { fmt::print("{}\n", document.dump(2)); }
 
-void ModelOptions::add_to(CLI::App& app) {
-  app.add_option("METHOD", method, "Method (textonbench list methods)")->required();
-  app.add_option("EXEMPLAR", exemplar, "Exemplar (textonbench list exemplars) or a picture file")->required();
+void ModelOptions::add_method_to(CLI::App& app, bool required) {
+  app.add_option("METHOD", method, "Method (textonbench list methods)")->required(required);
+  app.add_option("EXEMPLAR", exemplar, "Exemplar (textonbench list exemplars) or a picture file")->required(required);
+}
+
+void ModelOptions::add_params_to(CLI::App& app) {
   app.add_option("-p,--param", params, "Option of the method as name=value; may be repeated")->allow_extra_args(false);
-  app.add_option("--size", size, "Size of a sample as WIDTHxHEIGHT (the exemplar's own)");
-  CLI::Option* torus = app.add_flag("--periodic", periodic, "Sample a torus (usual without --size)");
-  app.add_flag("--no-periodic", no_periodic, "Sample a window of the plane (usual with --size)")->excludes(torus);
   app.add_option("--seed", seed, "Any whole number from 0 to 2^64 - 1")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
 }
 
-Params ModelOptions::read_params(const MethodEntry& entry) const {
+void ModelOptions::add_domain_to(CLI::App& app) {
+  app.add_option("--size", size, "Size of a sample as WIDTHxHEIGHT (the exemplar's own)");
+  CLI::Option* torus = app.add_flag("--periodic", periodic, "Sample a torus (usual without --size)");
+  app.add_flag("--no-periodic", no_periodic, "Sample a window of the plane (usual with --size)")->excludes(torus);
+}
+
+std::map<std::string, ParamValue> ModelOptions::given_params(std::span<const ParamSpec> specs) const {
   std::map<std::string, ParamValue> given;
   for (const std::string& assignment : params) {
-    auto [name, value] = parse_param(entry.params, assignment);
+    auto [name, value] = parse_param(specs, assignment);
     given.insert_or_assign(std::move(name), std::move(value));
   }
-  return {entry.params, given};
+  return given;
 }
+
+Params ModelOptions::read_params(const MethodEntry& entry) const { return {entry.params, given_params(entry.params)}; }
 
 Extent ModelOptions::read_size() const { return size.empty() ? Extent{} : parse_size(size); }
 

@@ -6,7 +6,9 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,7 @@ struct Command {
 };
 
 Command list_command(CLI::App& app, const GlobalOptions& globals);
+Command fit_command(CLI::App& app, const GlobalOptions& globals);
 Command synth_command(CLI::App& app, const GlobalOptions& globals);
 Command measure_command(CLI::App& app, const GlobalOptions& globals);
 Command run_command(CLI::App& app, const GlobalOptions& globals);
@@ -51,14 +54,18 @@ void set_examples(CLI::App& command, const std::string& examples);
 /// Prints the one JSON document of --json.
 void print_json(const nlohmann::ordered_json& document);
 
-/// METHOD EXEMPLAR [-p name=value]... [--size WxH] [--periodic|--no-periodic] [--seed N] of synth and measure.
+/// METHOD EXEMPLAR, [-p name=value]... [--seed N], and [--size WxH] [--periodic|--no-periodic] of fit, synth and
+/// measure.
 struct ModelOptions {
   std::string method, exemplar, size;
   std::vector<std::string> params;
   bool periodic = false, no_periodic = false;
   std::uint64_t seed = 1;
 
-  void add_to(CLI::App& app);
+  void add_method_to(CLI::App& app, bool required = true);
+  void add_params_to(CLI::App& app);
+  void add_domain_to(CLI::App& app);
+  std::map<std::string, ParamValue> given_params(std::span<const ParamSpec> specs) const;
   Params read_params(const MethodEntry& entry) const;
   /// The size asked for, or 0x0 for the exemplar's own.
   Extent read_size() const;

@@ -93,7 +93,9 @@ int measure(const MeasureOptions& options, const GlobalOptions& globals) {
 Command measure_command(CLI::App& app, const GlobalOptions& globals) {
   const auto options = std::make_shared<MeasureOptions>();
   CLI::App* command = app.add_subcommand("measure", "Measure how good and how fast one model is");
-  options->model.add_to(*command);
+  options->model.add_method_to(*command);
+  options->model.add_params_to(*command);
+  options->model.add_domain_to(*command);
   command->add_option("--samples", options->samples, "Samples to draw")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));

@@ -30,7 +30,8 @@ int write(const ReportOptions& options, const GlobalOptions& globals) {
     Plan plan = make_plan(config, exemplars);
     configs.push_back({.config = std::move(config), .plan = std::move(plan)});
   }
-  std::ranges::stable_partition(configs, [](const ReportConfig& config) { return !config.config.appendix; });
+  std::stable_partition(configs.begin(), configs.end(),
+                        [](const ReportConfig& config) { return !config.config.appendix; });
   const Ledger ledger = read_ledger(home, exemplars, options.profile);
   write_ledger_page(evaluate_claims(ledger.claims, ledger.plans, results.read().records), results);
   const std::filesystem::path page = std::filesystem::absolute(write_report(configs, exemplars, results));

@@ -1,33 +1,43 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <map>
 #include <memory>
 #include <stdexcept>
 
 #include "experiments/cli/command.h"
 #include "experiments/execute.h"
+#include "experiments/model_file.h"
 #include "experiments/provenance.h"
 #include "methods/base/image_io.h"
+#include "methods/spot/spot_noise.h"
 
 namespace textonbench::cli {
 namespace {
 
 struct SynthOptions {
   ModelOptions model;
+  std::filesystem::path model_file;
   std::filesystem::path output;
   bool json = false;
 };
 
-int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
-  const tbb::global_control threads = limit_threads(globals);
-  const ModelOptions& asked = options.model;
+using Clock = std::chrono::steady_clock;
+
+struct Fitted {
+  std::unique_ptr<Model> model;
+  Domain domain;
+  double seconds = 0;
+};
+
+Fitted fit_to_exemplar(const ModelOptions& asked, bool quiet) {
   const MethodEntry& method = find_method(asked.method);
   const Params params = asked.read_params(method);
   const Extent asked_size = asked.read_size();
   const ExemplarCatalog catalog(home_folder());
   std::vector<std::string> notes;
   const Exemplar exemplar = load_exemplar(find_exemplar(catalog, asked.exemplar), &notes);
-  if (!globals.quiet) {
+  if (!quiet) {
     for (const std::string& note : notes) fmt::print(stderr, "{}: {}\n", exemplar.name, note);
   }
   require_usable(exemplar);
@@ -37,17 +47,47 @@ int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
   if (const std::optional<std::string> reason = method.refuses(problem, params, domain)) {
     throw std::invalid_argument(fmt::format("{} cannot do this: {}", asked.method, *reason));
   }
-
-  using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
-  const std::unique_ptr<Model> model = method.analyze(problem, params, analysis_seed(asked.seed));
-  const Clock::time_point analyzed = Clock::now();
+  std::unique_ptr<Model> model = method.analyze(problem, params, analysis_seed(asked.seed));
+  return {std::move(model), domain, std::chrono::duration<double>(Clock::now() - start).count()};
+}
+
+/// The noise of a texton that was fitted before, with the parameters that it was fitted with where none are given.
+Fitted read_fitted(const SynthOptions& options) {
+  const ModelOptions& asked = options.model;
+  const Clock::time_point start = Clock::now();
+  const bool is_text = options.model_file.extension() == ".texton";
+  ModelFile file = is_text ? read_texton_as_model(options.model_file) : read_model_file(options.model_file);
+  const std::vector<ParamSpec> specs = spot_noise_params("poisson");
+  std::map<std::string, ParamValue> given;
+  for (const ParamSpec& spec : specs) {
+    if (const auto kept = file.params.find(std::string(spec.name)); kept != file.params.end()) given.insert(*kept);
+  }
+  for (auto& [name, value] : asked.given_params(specs)) given.insert_or_assign(name, value);
+  const SpotNoiseOptions noise = spot_noise_options(Params(specs, given), file.texton.support_pixels);
+  const Extent asked_size = asked.read_size();
+  const Domain domain{.size = asked_size.area() > 0 ? asked_size : Extent{512, 512}, .periodic = asked.periodic};
+  if (const std::optional<std::string> reason = refuse_spot_noise(file.texton.extent(), domain)) {
+    throw std::invalid_argument(fmt::format("{} cannot do this: {}", options.model_file.string(), *reason));
+  }
+  std::unique_ptr<Model> model = make_spot_noise(std::move(file.texton), noise);
+  return {std::move(model), domain, std::chrono::duration<double>(Clock::now() - start).count()};
+}
+
+int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
+  const tbb::global_control threads = limit_threads(globals);
+  const ModelOptions& asked = options.model;
+  const bool from_file = !options.model_file.empty();
+  if (from_file != asked.method.empty() || from_file != asked.exemplar.empty()) {
+    throw std::invalid_argument("synth: expected either METHOD EXEMPLAR or --model FILE");
+  }
+  const auto [model, domain, analyze_seconds] =
+      from_file ? read_fitted(options) : fit_to_exemplar(asked, globals.quiet);
+  const Clock::time_point start = Clock::now();
   const Image sample = model->synthesize(domain, sample_seed(asked.seed, 0));
-  const Clock::time_point done = Clock::now();
+  const double synthesize_seconds = std::chrono::duration<double>(Clock::now() - start).count();
   write_image(sample, options.output);
 
-  const double analyze_seconds = std::chrono::duration<double>(analyzed - start).count();
-  const double synthesize_seconds = std::chrono::duration<double>(done - analyzed).count();
   if (options.json) {
     print_json({{"output", options.output.string()},
                 {"seconds", {{"analyze", analyze_seconds}, {"synthesize", synthesize_seconds}}},
@@ -59,7 +99,7 @@ int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
   fmt::print("{}: {}x{} {}, seed {} (analysis {:.1f} ms, synthesis {:.1f} ms)\n", options.output.string(),
              domain.size.width, domain.size.height, domain.periodic ? "torus" : "window", asked.seed,
              1e3 * analyze_seconds, 1e3 * synthesize_seconds);
-  if (!globals.quiet) {
+  if (!globals.quiet && !from_file) {
     fmt::print(stderr, "next: textonbench measure {} {} tells how good it is\n", asked.method, asked.exemplar);
   }
   return 0;
@@ -69,14 +109,21 @@ int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
 
 Command synth_command(CLI::App& app, const GlobalOptions& globals) {
   const auto options = std::make_shared<SynthOptions>();
-  CLI::App* synth = app.add_subcommand("synth", "Fit a model to an exemplar and draw one sample");
-  options->model.add_to(*synth);
+  CLI::App* synth = app.add_subcommand("synth", "Fit a model to an exemplar, or read one, and draw one sample");
+  options->model.add_method_to(*synth, false);
+  options->model.add_params_to(*synth);
+  options->model.add_domain_to(*synth);
+  synth->add_option(
+      "--model", options->model_file,
+      "Instead of METHOD EXEMPLAR: a model that textonbench fit wrote (.json), or a .texton of order 0; -p "
+      "then takes impacts, mni, intensity and route, and a sample has 512x512 pixels without --size");
   synth->add_option("-o,--output", options->output, "Picture to write: .png (8 bit, clamped) or .exr (float)")
       ->required();
   synth->add_flag("--json", options->json, "Print one JSON document");
   set_examples(*synth,
                "  textonbench synth rpn mamurk_a_1 --seed 3 -o rpn.png\n"
-               "  textonbench synth adsn photo.jpg --size 1024x768 -o large.png");
+               "  textonbench synth adsn photo.jpg --size 1024x768 -o large.png\n"
+               "  textonbench synth --model texton.json -p impacts=stratified -p mni=5 -o from_file.png");
   return {synth, [options, &globals] { return synthesize(*options, globals); }};
 }
 

@@ -49,8 +49,8 @@ struct MetricEntry {
   std::string_view unit;   ///< "1" for a ratio, "s", "dB", …
   MetricLevel level;
   Better better;
-  std::string_view reference;    ///< definition: paper and equation, or a formula
-  std::string_view source = "";  ///< the file of this folder that computes it, without extension; none for costs
+  std::string_view reference;  ///< definition: paper and equation, or a formula
+  std::string_view source{};   ///< the file of this folder that computes it, without extension; none for costs
   /// Of a model-level metric: its value from the closed form, or nothing when the model has none.
   std::optional<double> (*of_model)(const Model&, const Target&, const Domain&) = nullptr;
   /// Of a sample-level metric. `seed` fixes what the metric draws itself (projections, points).

@@ -57,7 +57,9 @@ TEST_F(ExecuteTest, EveryMetricIsMeasuredWithWhatItsLevelPromises) {
   for (const MetricEntry& metric : metric_catalog()) spec.metrics.emplace_back(metric.name);
   const Record record = execute_here(spec);
   for (const MetricEntry& metric : metric_catalog()) {
-    ASSERT_TRUE(record["metrics"].contains(metric.name)) << metric.name;
+    const bool of_textons = metric.source == "texton_quality";
+    ASSERT_EQ(record["metrics"].contains(metric.name), !of_textons) << metric.name;
+    if (of_textons) continue;
     const Record& value = record["metrics"][std::string(metric.name)];
     EXPECT_TRUE(value["value"].is_number()) << metric.name;
     EXPECT_EQ(value["unit"], metric.unit);
@@ -103,7 +105,7 @@ TEST_F(ExecuteTest, AWindowOfThePlaneIsHeldAgainstTheSameWindow) {
 }
 
 TEST_F(ExecuteTest, EveryPictureOfTheCatalogIsKept) {
-  RunSpec spec = make_spec("rpn");
+  RunSpec spec = make_spec("sot");
   spec.samples = 3;
   for (const PictureEntry& picture : picture_catalog()) spec.pictures.emplace_back(picture.name);
   const Record record = execute_here(spec);

@@ -1,0 +1,131 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "experiments/cli/command.h"
+#include "experiments/execute.h"
+#include "experiments/files.h"
+#include "experiments/metrics/metric.h"
+#include "experiments/model_file.h"
+#include "experiments/provenance.h"
+#include "experiments/texton_file.h"
+#include "methods/base/image_io.h"
+
+namespace textonbench::cli {
+namespace {
+
+struct FitOptions {
+  ModelOptions model;
+  std::filesystem::path output;
+  bool json = false;
+};
+
+/// Gray textons are stored with three equal channels.
+Image as_color(const Image& kernel) {
+  if (kernel.channels() == 3) return kernel;
+  Image color(kernel.extent(), 3);
+  for (int c = 0; c < 3; ++c) {
+    for (int y = 0; y < kernel.height(); ++y) std::ranges::copy(kernel.row(0, y), color.row(c, y).begin());
+  }
+  return color;
+}
+
+/// STEM.json, and STEM.texton and STEM.exr, or STEM_1.texton … where impacts choose among several kernels.
+std::vector<std::filesystem::path> write_model(const ModelFile& model, const std::filesystem::path& stem,
+                                               const std::string& source) {
+  std::vector<std::filesystem::path> files{with_suffix(stem, ".json")};
+  write_model_file(model, files.front());
+  const std::vector<Image>& kernels = model.texton.kernels;
+  const std::vector<double>& mean = model.texton.mean;
+  // A kernel alone has the covariance that all of them have together when each is scaled by sqrt(K); the text format
+  // has no place for that, so it holds the kernels as they are summed.
+  const auto scale = static_cast<float>(std::sqrt(static_cast<double>(kernels.size())));
+  for (std::size_t k = 0; k < kernels.size(); ++k) {
+    const std::string number = kernels.size() == 1 ? "" : fmt::format("_{}", k + 1);
+    Image color = as_color(kernels[k]);
+    for (int c = 0; c < 3; ++c) {
+      for (int y = 0; y < color.height(); ++y) {
+        for (float& v : color.row(c, y)) v *= scale;
+      }
+    }
+    files.push_back(with_suffix(stem, number + ".exr"));
+    write_image(color, files.back());
+    TextonFile texton{.order = 0, .coefficients = std::move(color), .source = source};
+    for (std::size_t c = 0; c < 3; ++c) texton.mean.at(c) = mean[mean.size() == 1 ? 0 : c];
+    files.push_back(with_suffix(stem, number + ".texton"));
+    write_texton_file(texton, files.back());
+  }
+  return files;
+}
+
+int fit(const FitOptions& options, const GlobalOptions& globals) {
+  const tbb::global_control threads = limit_threads(globals);
+  const ModelOptions& asked = options.model;
+  const MethodEntry& method = find_method(asked.method);
+  const Params params = asked.read_params(method);
+  const ExemplarCatalog catalog(home_folder());
+  const Exemplar exemplar = load_exemplar(find_exemplar(catalog, asked.exemplar));
+  require_usable(exemplar);
+  const std::unique_ptr<Model> model = method.analyze({exemplar}, params, analysis_seed(asked.seed));
+  const Texton* texton = model->texton();
+  if (texton == nullptr) {
+    throw std::invalid_argument(
+        fmt::format("{} has no texton to write: expected a spot noise (textonbench list methods)", asked.method));
+  }
+  const Extent size = exemplar.pixels.extent();
+  const std::vector<std::filesystem::path> files =
+      write_model({.method = asked.method,
+                   .params = params.values(),
+                   .exemplar = exemplar.name,
+                   .exemplar_sha256 = exemplar.sha256,
+                   .seed = asked.seed,
+                   .texton = *texton},
+                  options.output, fmt::format("{} {}x{}", exemplar.name, size.width, size.height));
+
+  const std::optional<double> error =
+      find_metric("rme").of_model(*model, make_target(exemplar), Domain{.size = size, .periodic = true});
+  std::vector<std::string> names;
+  names.reserve(files.size());
+  for (const std::filesystem::path& file : files) names.push_back(file.string());
+  if (options.json) {
+    print_json({{"files", names},
+                {"kernels", texton->kernels.size()},
+                {"size", {texton->extent().width, texton->extent().height}},
+                {"support_pixels", texton->support_pixels},
+                {"rme", error ? nlohmann::ordered_json(*error) : nullptr},
+                {"seed", asked.seed}});
+    return 0;
+  }
+  fmt::print("{}: {} kernel{} of {}x{}, {} pixels of support{}\n", fmt::join(names, " "), texton->kernels.size(),
+             texton->kernels.size() == 1 ? "" : "s", texton->extent().width, texton->extent().height,
+             texton->support_pixels, error ? fmt::format(", RME {:.4f}", *error) : "");
+  if (!globals.quiet) {
+    fmt::print(stderr, "next: textonbench synth --model {} -o sample.png\n", files.front().string());
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command fit_command(CLI::App& app, const GlobalOptions& globals) {
+  const auto options = std::make_shared<FitOptions>();
+  CLI::App* fit_app = app.add_subcommand("fit", "Fit a texton to an exemplar and write it to files");
+  options->model.add_method_to(*fit_app);
+  options->model.add_params_to(*fit_app);
+  fit_app
+      ->add_option("-o,--output", options->output,
+                   "Files to write, without extension: .json (read by synth --model), and each kernel as .texton (the "
+                   "text format of the authors of Texton Noise) and .exr")
+      ->required();
+  fit_app->add_flag("--json", options->json, "Print one JSON document");
+  set_examples(*fit_app,
+               "  textonbench fit sot mamurk_e_1 -p support=31 -o texton\n"
+               "  textonbench synth --model texton.json --size 1024x1024 -o sample.png");
+  return {fit_app, [options, &globals] { return fit(*options, globals); }};
+}
+
+}  // namespace textonbench::cli

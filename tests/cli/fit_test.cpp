@@ -1,0 +1,108 @@
+// Textons written to files and read back.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "methods/base/image_io.h"
+#include "tests/cli/program.h"
+#include "tests/temporary_folder.h"
+
+namespace textonbench::fit_test {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using Json = nlohmann::ordered_json;
+
+class FitTest : public testing::Test {
+ protected:
+  Outcome run(const std::vector<std::string>& arguments) const { return run_program(arguments, {folder_.path()}); }
+  Json run_json(std::vector<std::string> arguments) const {
+    arguments.emplace_back("--json");
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return Json::parse(outcome.out);
+  }
+  std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
+  Image picture(const std::string& name) const { return read_image(file(name)).image; }
+
+  TemporaryFolder folder_;
+};
+
+double largest_difference(const Image& a, const Image& b) {
+  double largest = 0;
+  for (int c = 0; c < a.channels(); ++c) {
+    for (int y = 0; y < a.height(); ++y) {
+      for (int x = 0; x < a.width(); ++x) {
+        largest = std::max(largest, std::fabs(double{a.at(c, x, y)} - b.at(c, x, y)));
+      }
+    }
+  }
+  return largest;
+}
+
+TEST_F(FitTest, AModelReadBackMakesTheSamePicture) {
+  const std::vector<std::string> options{"ring", "-p", "support=9", "-p", "impacts=poisson", "-p", "mni=12"};
+  const auto with = [&](std::vector<std::string> start, const std::vector<std::string>& end) {
+    start.insert(start.end(), options.begin(), options.end());
+    start.insert(start.end(), end.begin(), end.end());
+    return start;
+  };
+  const Json fitted = run_json(with({"fit", "sot"}, {"-o", "model"}));
+  EXPECT_EQ(fitted["files"], (Json{"model.json", "model.exr", "model.texton"}));
+  EXPECT_EQ(fitted["kernels"], 1);
+  EXPECT_EQ(fitted["support_pixels"], 81);
+  EXPECT_GT(fitted["rme"], 0.1);
+  EXPECT_LT(fitted["rme"], 1);
+  run_json(with({"synth", "sot"}, {"--size", "64x48", "-o", "direct.exr"}));
+  run_json({"synth", "--model", "model.json", "--size", "64x48", "-o", "read.exr"});
+  EXPECT_EQ(largest_difference(picture("direct.exr"), picture("read.exr")), 0);
+  // The text format knows neither the process nor the number of impacts.
+  run_json({"synth", "--model", "model.texton", "-p", "mni=12", "--size", "64x48", "-o", "text.exr"});
+  EXPECT_LT(largest_difference(picture("direct.exr"), picture("text.exr")), 1e-5);
+  run_json({"synth", "--model", "model.json", "-p", "impacts=stratified", "-o", "other.exr"});
+  EXPECT_EQ(picture("other.exr").extent(), (Extent{512, 512}));
+}
+
+TEST_F(FitTest, SeveralKernelsAreSeveralFiles) {
+  const Json fitted = run_json(
+      {"fit", "optimal_texton", "ring", "-p", "support=7", "-p", "kernels=2", "-p", "evaluations=5", "-o", "k"});
+  EXPECT_EQ(fitted["files"], (Json{"k.json", "k_1.exr", "k_1.texton", "k_2.exr", "k_2.texton"}));
+  const Outcome outcome = run({"synth", "--model", "k.json", "--size", "40x30", "-o", "k.png"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
+TEST_F(FitTest, WhatCannotBeFittedOrReadEndsWithStatus2) {
+  std::ofstream(file("cut.texton")) << "TEXTON\n1\n0\n0 0 0\n2 2\n1 1 1\n";
+  std::ofstream(file("good.texton")) << "TEXTON\n1\n0\n0 0 0\n1 1\n1 1 1\nsource\n";
+  std::ofstream(file("linear.texton")) << "TEXTON\n1\n1\n0 0 0\n1 1\n0 0 0\nsource\n";
+  std::ofstream(file("broken.json")) << "{\"format\": \"textonbench model\"";
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+      {{"fit", "rpn", "ring", "-o", "m"}, "rpn has no texton to write"},
+      {{"fit", "sot", "ring", "-p", "support=300", "-o", "m"}, "300"},
+      {{"fit", "sot", "ring", "-p", "support=5", "-o", "missing/m"}, "missing/m"},
+      {{"fit", "canonical_texton", "ring", "-o", "m"}, "gray"},
+      {{"synth", "--model", "none.json", "-o", "a.png"}, "none.json: no such file"},
+      {{"synth", "--model", "cut.texton", "-o", "a.png"}, "cut.texton:7: the file ends here"},
+      {{"synth", "--model", "linear.texton", "-o", "a.png"}, "order 1: expected order 0"},
+      {{"synth", "--model", "broken.json", "-o", "a.png"}, "broken.json: expected a model"},
+      {{"synth", "--model", "good.texton", "-p", "support=3", "-o", "a.png"}, "support"},
+      {{"synth", "sot", "ring", "--model", "cut.texton", "-o", "a.png"}, "either METHOD EXEMPLAR or --model FILE"},
+      {{"synth", "-o", "a.png"}, "either METHOD EXEMPLAR or --model FILE"},
+      {{"synth", "sot", "ring", "-p", "mni=0", "-o", "a.png"}, "mni"},
+      {{"synth", "sot", "ring", "-p", "impacts=poisson", "-p", "mni=1e300", "-o", "a.png"}, "mni"},
+      {{"synth", "sot", "ring", "-p", "shape=mask", "-p", "mask=none.png", "-o", "a.png"}, "none.png"},
+  };
+  for (const auto& [arguments, message] : cases) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, 2) << message;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("textonbench: error: "), HasSubstr(message)));
+    EXPECT_EQ(outcome.out, "") << message;
+  }
+  EXPECT_FALSE(std::filesystem::exists(file("m.json")));
+  EXPECT_FALSE(std::filesystem::exists(file("a.png")));
+}
+
+}  // namespace textonbench::fit_test
