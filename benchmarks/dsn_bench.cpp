@@ -7,6 +7,8 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <ctime>
 #include <string>
 #include <vector>
@@ -59,14 +61,14 @@ double floor_seconds(double floats) {
   static AlignedBuffer<float> to(chunk);
   from.set_zero();
   to.set_zero();
-  const double sample = std::min(floats, 0x1p26);
+  const auto chunks = static_cast<std::int64_t>(std::ceil(std::min(floats, 0x1p26) / chunk));
   const double seconds = seconds_of([&] {
-    for (double done = 0; done < sample; done += chunk) {
+    for (std::int64_t i = 0; i < chunks; ++i) {
       saxpy(from.data(), 0.5F, chunk, to.data());
       benchmark::ClobberMemory();
     }
   });
-  return seconds * floats / sample;
+  return seconds * floats / static_cast<double>(chunks * std::int64_t{chunk});
 }
 
 double synthesis_seconds(const Model& model, const Domain& domain, std::uint64_t seed) {
