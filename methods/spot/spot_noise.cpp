@@ -199,7 +199,7 @@ std::vector<ParamSpec> spot_noise_params(std::string_view default_impacts) {
        .default_value = std::string(default_impacts),
        .unit = "",
        .help = "where kernels fall: at the points of a Poisson process; one of random sign in each cell of a lattice "
-               "(stratified), which has the same covariance and nearly the Gaussian law with a tenth of the impacts; "
+               "(stratified), which has the same covariance and nearly the Gaussian law with fewer impacts; "
                "or the Gaussian limit of infinitely many",
        .choices = {"gaussian", "poisson", "stratified"}},
       {.name = "mni",
