@@ -188,9 +188,8 @@ std::vector<std::string> ExemplarCatalog::tagged(std::string_view tag) const {
 std::string exemplar_sha256(const ExemplarInfo& info) {
   require_available(info);
   if (info.file.empty()) {
-    return sha256(fmt::format("procedural exemplar {}, seed {}, code {}", info.name,
-                              find_procedural(info.name).seed.value,
-                              source_version("experiments/procedural_exemplars")));
+    return sha256(fmt::format("procedural exemplar {}, seed {}, definition {}", info.name,
+                              find_procedural(info.name).seed.value, procedural_definition));
   }
   return sha256_of_file(info.file);
 }

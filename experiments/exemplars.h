@@ -47,7 +47,7 @@ class ExemplarCatalog {
   std::vector<ExemplarInfo> all_;
 };
 
-/// SHA-256 of the file's bytes; of a procedural exemplar, of its name, seed and code version. Cheap: decodes nothing.
+/// SHA-256 of the file's bytes; of a procedural exemplar, of its name, seed and definition. Cheap: decodes nothing.
 std::string exemplar_sha256(const ExemplarInfo& info);
 
 /// Reads (or makes) the pixels. `notes` receives what image_io changed. Throws when the file is not the expected one.

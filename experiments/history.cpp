@@ -134,8 +134,7 @@ std::string History::why_run(const PlannedRun& run) const {
   for (const FlatSpec& old : group->second) {
     if (auto found = differences(old); found.size() < nearest.size()) nearest = std::move(found);
   }
-  // A procedural exemplar's hash follows the code.
-  const bool other_code = nearest.contains("code_version") && nearest.size() == 1 + nearest.count("exemplar_sha256");
+  const bool other_code = nearest.contains("code_version") && nearest.size() == 1;
   std::vector<std::string> parts;
   parts.reserve(nearest.size());
   for (const auto& [key, text] : nearest) parts.push_back(text);

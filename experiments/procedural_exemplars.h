@@ -30,6 +30,10 @@ struct ProceduralExemplar {
 
 constexpr Extent procedural_extent{256, 256};
 
+/// Number of the definition of all of them: raised whenever a law, or how a seed draws it, changes. Rounding, which
+/// differs between processors, is no change. With name and seed it stands for the SHA-256 of a file.
+constexpr int procedural_definition = 1;
+
 /// white_noise, ring, oriented_lobe, power_law.
 std::span<const ProceduralExemplar> procedural_exemplars();
 

@@ -164,7 +164,8 @@ std::string code_version(const std::string& method, std::span<const std::string>
   for (const std::string& name : metrics) {
     if (const std::string_view source = find_metric(name).source; !source.empty()) sources.insert(source);
   }
-  std::string versions = fmt::format("{} {} {}", source_version("experiments/execute"), method_version(floor_method),
+  std::string versions = fmt::format("{} {} {} {}", source_version("experiments/execute"),
+                                     source_version("experiments/procedural_exemplars"), method_version(floor_method),
                                      method_version(method));
   for (const std::string_view source : sources) {
     versions += fmt::format(" {}", source_version(fmt::format("experiments/metrics/{}", source)));

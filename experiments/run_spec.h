@@ -39,8 +39,8 @@ RunSpec run_spec_from_json(const nlohmann::ordered_json& json);
 inline constexpr const char* floor_method = "adsn";
 
 /// 16 hexadecimal digits: SHA-256 of the sources that decide these metrics of a method (provenance.h): the method's own
-/// file, those of the metrics, and what executes them and measures their floors. Throws std::invalid_argument for an
-/// unknown method or metric.
+/// file, those of the metrics, what executes them and measures their floors, and what draws the procedural exemplars.
+/// Throws std::invalid_argument for an unknown method or metric.
 std::string code_version(const std::string& method, std::span<const std::string> metrics);
 
 /// 16 hexadecimal digits: SHA-256 of to_json(spec) and of its code_version. Two runs with the same id compute the same.

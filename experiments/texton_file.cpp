@@ -58,6 +58,9 @@ class TextonReader {
     return values;
   }
 
+  /// Characters that no line has taken yet.
+  std::size_t left() const { return text_.size() - std::min(at_, text_.size()); }
+
   /// What is left, as one line.
   std::string rest() {
     std::string found(at_ < text_.size() ? line("the exemplar's name") : std::string_view());
@@ -119,6 +122,11 @@ TextonFile read_texton_file(const std::filesystem::path& file) {
   const std::vector<int> size = reader.numbers<int>(2, "width and height");
   if (size[0] < 1 || size[1] < 1 || size[0] > largest_side || size[1] > largest_side) {
     reader.refuse(fmt::format("{} x {}: expected sides from 1 to {}", size[0], size[1], largest_side));
+  }
+  constexpr std::size_t shortest_line = 6;  // "0 0 0\n"
+  if (reader.left() / shortest_line < static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1])) {
+    reader.refuse(fmt::format("{} x {} coefficients announced and {} bytes left: the file is cut short", size[0],
+                              size[1], reader.left()));
   }
   texton.coefficients = Image({size[0], size[1]}, 3);
   for (int y = size[1] - 1; y >= 0; --y) {

@@ -41,8 +41,8 @@ std::vector<std::filesystem::path> write_model(const ModelFile& model, const std
   write_model_file(model, files.front());
   const std::vector<Image>& kernels = model.texton.kernels;
   const std::vector<double>& mean = model.texton.mean;
-  // A kernel alone has the covariance that all of them have together when each is scaled by sqrt(K); the text format
-  // has no place for that, so it holds the kernels as they are summed.
+  // An impact adds sqrt(K) h_k. The other formats have no place for the factor, so they hold kernels as they are
+  // summed.
   const auto scale = static_cast<float>(std::sqrt(static_cast<double>(kernels.size())));
   for (std::size_t k = 0; k < kernels.size(); ++k) {
     const std::string number = kernels.size() == 1 ? "" : fmt::format("_{}", k + 1);

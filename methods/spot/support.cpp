@@ -152,9 +152,15 @@ Support support_of(const Params& params, Extent exemplar) {
     if (file.empty()) {
       throw std::invalid_argument("shape \"mask\" needs the option mask, an image file");
     }
-    Support support = mask_support(read_image(file).image);
-    require_fit(support.box, exemplar);
-    return support;
+    try {
+      Support support = mask_support(read_image(file).image);
+      require_fit(support.box, exemplar);
+      return support;
+    } catch (const std::invalid_argument& error) {
+      const std::string message = error.what();
+      throw std::invalid_argument(message.find(file) == std::string::npos ? fmt::format("{}: {}", file, message)
+                                                                          : message);
+    }
   }
   const std::int64_t size = params.integer("support");
   if (size == 0) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -75,6 +76,11 @@ TEST_F(FitTest, SeveralKernelsAreSeveralFiles) {
 }
 
 TEST_F(FitTest, WhatCannotBeFittedOrReadEndsWithStatus2) {
+  write_image(Image({9, 8}, 1), file("black.png"));
+  Image wide({300, 8}, 1);
+  for (int y = 0; y < 8; ++y) std::ranges::fill(wide.row(0, y), 1.0F);
+  write_image(wide, file("wide.png"));
+  write_image(crop(wide, 0, 0, {8, 8}), file("constant.png"));
   std::ofstream(file("cut.texton")) << "TEXTON\n1\n0\n0 0 0\n2 2\n1 1 1\n";
   std::ofstream(file("good.texton")) << "TEXTON\n1\n0\n0 0 0\n1 1\n1 1 1\nsource\n";
   std::ofstream(file("linear.texton")) << "TEXTON\n1\n1\n0 0 0\n1 1\n0 0 0\nsource\n";
@@ -85,7 +91,8 @@ TEST_F(FitTest, WhatCannotBeFittedOrReadEndsWithStatus2) {
       {{"fit", "sot", "ring", "-p", "support=5", "-o", "missing/m"}, "missing/m"},
       {{"fit", "canonical_texton", "ring", "-o", "m"}, "gray"},
       {{"synth", "--model", "none.json", "-o", "a.png"}, "none.json: no such file"},
-      {{"synth", "--model", "cut.texton", "-o", "a.png"}, "cut.texton:7: the file ends here"},
+      {{"synth", "--model", "cut.texton", "-o", "a.png"},
+       "cut.texton:5: 2 x 2 coefficients announced and 6 bytes left"},
       {{"synth", "--model", "linear.texton", "-o", "a.png"}, "order 1: expected order 0"},
       {{"synth", "--model", "broken.json", "-o", "a.png"}, "broken.json: expected a model"},
       {{"synth", "--model", "good.texton", "-p", "support=3", "-o", "a.png"}, "support"},
@@ -94,6 +101,12 @@ TEST_F(FitTest, WhatCannotBeFittedOrReadEndsWithStatus2) {
       {{"synth", "sot", "ring", "-p", "mni=0", "-o", "a.png"}, "mni"},
       {{"synth", "sot", "ring", "-p", "impacts=poisson", "-p", "mni=1e300", "-o", "a.png"}, "mni"},
       {{"synth", "sot", "ring", "-p", "shape=mask", "-p", "mask=none.png", "-o", "a.png"}, "none.png"},
+      {{"synth", "sot", "ring", "-p", "shape=mask", "-p", "mask=black.png", "-o", "a.png"},
+       "black.png: support mask of 9x8"},
+      {{"synth", "sot", "ring", "-p", "shape=mask", "-p", "mask=wide.png", "-o", "a.png"},
+       "wide.png: support of 300x8"},
+      {{"synth", "sot", "constant.png", "-p", "support=3", "-o", "a.png"}, "constant"},
+      {{"synth", "optimal_texton", "constant.png", "-p", "support=3", "-o", "a.png"}, "constant"},
   };
   for (const auto& [arguments, message] : cases) {
     const Outcome outcome = run(arguments);

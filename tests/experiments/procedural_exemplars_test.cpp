@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <array>
 #include <cmath>
 #include <complex>
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -157,6 +160,24 @@ TEST_P(ProceduralTest, SameSeedSameBits) {
   };
   EXPECT_EQ(bits(1), bits(1));
   EXPECT_NE(bits(1), bits(2));
+}
+
+/// What stands for the SHA-256 of these pictures has to change when they do: then raise procedural_definition.
+TEST(ProceduralExemplars, PicturesAreThoseOfTheDefinition) {
+  ASSERT_EQ(procedural_definition, 1);
+  const std::map<std::string, std::array<float, 3>, std::less<>> pixels{
+      {"white_noise", {0.524393F, 0.565494F, 0.576981F}},
+      {"ring", {0.354930F, 0.279922F, 0.466448F}},
+      {"oriented_lobe", {0.450473F, 0.533281F, 0.534346F}},
+      {"power_law", {0.623054F, 0.546405F, 0.686545F}},
+  };
+  for (const ProceduralExemplar& exemplar : procedural_exemplars()) {
+    const Image image = draw_procedural(exemplar.name, exemplar.seed);
+    const std::array<float, 3>& expected = pixels.find(exemplar.name)->second;
+    EXPECT_NEAR(image.at(0, 0, 0), expected[0], 1e-5) << exemplar.name;
+    EXPECT_NEAR(image.at(1, 101, 30), expected[1], 1e-5) << exemplar.name;
+    EXPECT_NEAR(image.at(2, 255, 255), expected[2], 1e-5) << exemplar.name;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryLaw, ProceduralTest, testing::Values("white_noise", "ring", "oriented_lobe", "power_law"),

@@ -102,8 +102,10 @@ TEST_F(TextonFileTest, TellsWhatIsWrongAndWhere) {
   EXPECT_THAT(message_for(changed("1 -2 3", "1 inf 3")), HasSubstr("a.texton:11: \"1 inf 3\": expected three finite"));
   EXPECT_THAT(message_for(changed("1 -2 3", "1 -2")), HasSubstr("a.texton:11: \"1 -2\": expected three finite"));
   EXPECT_THAT(message_for(changed("1 -2 3", "1 -2 3x")), HasSubstr("a.texton:11:"));
-  EXPECT_THAT(message_for(small.substr(0, small.find("1 -2 3"))),
-              HasSubstr("the file ends here, expected three finite coefficients"));
+  const std::string cut = small.substr(0, small.find("1 -2 3"));
+  EXPECT_THAT(message_for(cut), HasSubstr("a.texton:5: 4 x 3 coefficients announced and 30 bytes left"));
+  EXPECT_THAT(message_for(cut.substr(0, cut.size() - 1) + std::string(80, ' ') + "\n"),
+              HasSubstr("a.texton:11: the file ends here, expected three finite coefficients"));
   EXPECT_THAT(message_for(small + "more\n"), HasSubstr("goes on after the line"));
   EXPECT_THAT(message_for(changed("4 3\n0 0 0", "4 3\n0 1 0")), HasSubstr("the coefficient at (0, 2) is not zero"));
   EXPECT_THROW(read_texton_file(folder_.path() / "none.texton"), std::invalid_argument);
