@@ -187,7 +187,7 @@ RunSummary run_plan(const Plan& plan, const ExemplarCatalog& exemplars, const Re
   }
   // Looked up here once, and inherited by every child.
   provenance();
-  Progress progress(pending.size(), options.show_progress, log_file(results));
+  Progress progress(pending.size(), "runs", options.show_progress, log_file(results));
   const StopSignals stop;
   std::list<Running> running;
   while (!pending.empty() || !running.empty()) {

@@ -1,15 +1,19 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "experiments/cli/command.h"
 #include "experiments/execute.h"
 #include "experiments/model_file.h"
+#include "experiments/progress.h"
 #include "experiments/provenance.h"
 #include "methods/base/image_io.h"
+#include "methods/base/image_io_tiled.h"
 #include "methods/spot/spot_noise.h"
 
 namespace textonbench::cli {
@@ -74,6 +78,26 @@ Fitted read_fitted(const SynthOptions& options) {
   return {std::move(model), domain, std::chrono::duration<double>(Clock::now() - start).count()};
 }
 
+/// Windows above this are drawn and written band by band, so that the memory they take does not grow with their height.
+constexpr std::int64_t most_pixels_at_once = std::int64_t{1} << 24;
+
+void draw_bands(const Model& model, const Domain& domain, Seed seed, const std::filesystem::path& output, bool quiet) {
+  std::optional<TiledImageWriter> writer;
+  Domain window = domain;
+  const int bands = (domain.size.height + TiledImageWriter::tile - 1) / TiledImageWriter::tile;
+  Progress progress(static_cast<std::size_t>(bands), "bands", !quiet, {});
+  for (int band = 0; band < bands; ++band) {
+    const int top = band * TiledImageWriter::tile;
+    window.origin.y = domain.origin.y + top * domain.step;
+    window.size.height = std::min(TiledImageWriter::tile, domain.size.height - top);
+    const Image image = model.synthesize(window, seed);
+    if (!writer) writer.emplace(output, domain.size, image.channels());
+    writer->write_band(image);
+    progress.advance("");
+  }
+  writer->finish();
+}
+
 int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
   const tbb::global_control threads = limit_threads(globals);
   const ModelOptions& asked = options.model;
@@ -84,9 +108,16 @@ int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
   const auto [model, domain, analyze_seconds] =
       from_file ? read_fitted(options) : fit_to_exemplar(asked, globals.quiet);
   const Clock::time_point start = Clock::now();
-  const Image sample = model->synthesize(domain, sample_seed(asked.seed, 0));
-  const double synthesize_seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  write_image(sample, options.output);
+  const Seed seed = sample_seed(asked.seed, 0);
+  double synthesize_seconds = 0;
+  if (domain.size.area() > most_pixels_at_once && !domain.periodic && options.output.extension() == ".exr") {
+    draw_bands(*model, domain, seed, options.output, globals.quiet);
+    synthesize_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  } else {
+    const Image sample = model->synthesize(domain, seed);
+    synthesize_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    write_image(sample, options.output);
+  }
 
   if (options.json) {
     print_json({{"output", options.output.string()},
@@ -117,7 +148,11 @@ Command synth_command(CLI::App& app, const GlobalOptions& globals) {
       "--model", options->model_file,
       "Instead of METHOD EXEMPLAR: a model that textonbench fit wrote (.json), or a .texton of order 0; -p "
       "then takes impacts, mni, intensity and route, and a sample has 512x512 pixels without --size");
-  synth->add_option("-o,--output", options->output, "Picture to write: .png (8 bit, clamped) or .exr (float)")
+  synth
+      ->add_option(
+          "-o,--output", options->output,
+          "Picture to write: .png (8 bit, clamped) or .exr (float); .exr of a window above 4096x4096 is drawn and "
+          "written in tiles, in little memory")
       ->required();
   synth->add_flag("--json", options->json, "Print one JSON document");
   set_examples(*synth,
