@@ -1,6 +1,9 @@
 #include "methods/spot/spline_spectrum.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <span>
 #include <utility>
 
 #include "methods/base/bspline.h"
@@ -47,8 +50,33 @@ CrossSpectrum spline_spectrum(const SplineTexton& texton, Extent grid) {
   return spectrum;
 }
 
-double relative_model_error(const SplineTexton& texton, const CrossSpectrum& target) {
-  return relative_model_error(spline_spectrum(texton, target.grid()), target);
+Image spline_overlap(const Image& coefficients, int order) {
+  const std::span<const double> b = bspline_autocorrelation(order);
+  const auto [width, height] = coefficients.extent();
+  Image result(coefficients.extent(), coefficients.channels());
+  parallel_for(coefficients.channels(), [&](int c) {
+    std::vector<double> along_rows(static_cast<std::size_t>(coefficients.extent().area()));
+    const auto at = [&](int x, int y) -> double& {
+      return along_rows[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+    };
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        for (int i = std::max(0, x - order); i <= std::min(width - 1, x + order); ++i) {
+          at(x, y) += b[static_cast<std::size_t>(std::abs(i - x))] * static_cast<double>(coefficients.at(c, i, y));
+        }
+      }
+    }
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        double sum = 0;
+        for (int j = std::max(0, y - order); j <= std::min(height - 1, y + order); ++j) {
+          sum += b[static_cast<std::size_t>(std::abs(j - y))] * at(x, j);
+        }
+        result.at(c, x, y) = static_cast<float>(sum);
+      }
+    }
+  });
+  return result;
 }
 
 }  // namespace textonbench

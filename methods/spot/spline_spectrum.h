@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "methods/base/gaussian_model.h"
+#include "methods/base/image.h"
 #include "methods/base/texton.h"
 
 namespace textonbench {
@@ -34,7 +35,7 @@ class SplineGain {
 /// std::invalid_argument for an order outside 0 … max_bspline_order.
 CrossSpectrum spline_spectrum(const SplineTexton& texton, Extent grid);
 
-/// Relative model error of the noise on Z² against a target of that grid (gaussian_model.h).
-double relative_model_error(const SplineTexton& texton, const CrossSpectrum& target);
+/// b * α inside the box of α, sums in double precision: Σ_x α(x) (b * α)(x) is the variance of the noise, ∫ h².
+Image spline_overlap(const Image& coefficients, int order);
 
 }  // namespace textonbench
