@@ -81,8 +81,10 @@ class Model {
   virtual Image synthesize(const Domain& domain, Seed seed) const = 0;
   virtual const Gaussian* gaussian() const { return nullptr; }
   virtual const Procedural* procedural() const { return nullptr; }
-  /// The kernels that the model sums, when it is a spot noise.
+  /// The kernels that the model sums, when it is a spot noise on Z².
   virtual const Texton* texton() const { return nullptr; }
+  /// The coefficients that the model sums as B-splines, when it is a noise of the plane.
+  virtual const SplineTexton* spline_texton() const { return nullptr; }
   virtual Footprint footprint(const Domain& domain) const = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "experiments/cli/command.h"
@@ -34,6 +35,17 @@ Image as_color(const Image& kernel) {
   return color;
 }
 
+/// The image with `frame` zeros on every side.
+Image framed(const Image& image, int frame) {
+  Image result({image.width() + 2 * frame, image.height() + 2 * frame}, image.channels());
+  for (int c = 0; c < image.channels(); ++c) {
+    for (int y = 0; y < image.height(); ++y) {
+      std::ranges::copy(image.row(c, y), result.row(c, y + frame).begin() + frame);
+    }
+  }
+  return result;
+}
+
 /// STEM.json, and STEM.texton and STEM.exr, or STEM_1.texton … where impacts choose among several kernels.
 std::vector<std::filesystem::path> write_model(const ModelFile& model, const std::filesystem::path& stem,
                                                const std::string& source) {
@@ -54,7 +66,8 @@ std::vector<std::filesystem::path> write_model(const ModelFile& model, const std
     }
     files.push_back(with_suffix(stem, number + ".exr"));
     write_image(color, files.back());
-    TextonFile texton{.order = 0, .coefficients = std::move(color), .source = source};
+    const int order = model.order.value_or(0);
+    TextonFile texton{.order = order, .coefficients = framed(color, (order + 1) / 2), .source = source};
     for (std::size_t c = 0; c < 3; ++c) texton.mean.at(c) = mean[mean.size() == 1 ? 0 : c];
     files.push_back(with_suffix(stem, number + ".texton"));
     write_texton_file(texton, files.back());
@@ -71,10 +84,11 @@ int fit(const FitOptions& options, const GlobalOptions& globals) {
   const Exemplar exemplar = load_exemplar(find_exemplar(catalog, asked.exemplar));
   require_usable(exemplar);
   const std::unique_ptr<Model> model = method.analyze({exemplar}, params, analysis_seed(asked.seed));
-  const Texton* texton = model->texton();
+  const SplineTexton* spline = model->spline_texton();
+  const Texton* texton = spline != nullptr ? &spline->coefficients : model->texton();
   if (texton == nullptr) {
-    throw std::invalid_argument(
-        fmt::format("{} has no texton to write: expected a spot noise (textonbench list methods)", asked.method));
+    throw std::invalid_argument(fmt::format(
+        "{} has no texton to write: expected a spot noise or texton noise (textonbench list methods)", asked.method));
   }
   const Extent size = exemplar.pixels.extent();
   const std::vector<std::filesystem::path> files =
@@ -83,7 +97,9 @@ int fit(const FitOptions& options, const GlobalOptions& globals) {
                    .exemplar = exemplar.name,
                    .exemplar_sha256 = exemplar.sha256,
                    .seed = asked.seed,
-                   .texton = *texton},
+                   .texton = *texton,
+                   .order = spline != nullptr ? std::optional(spline->order) : std::nullopt,
+                   .support_area = spline != nullptr ? spline->support_area : 0},
                   options.output, fmt::format("{} {}x{}", exemplar.name, size.width, size.height));
 
   const std::optional<double> error =

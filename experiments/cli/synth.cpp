@@ -15,6 +15,7 @@
 #include "methods/base/image_io.h"
 #include "methods/base/image_io_tiled.h"
 #include "methods/spot/spot_noise.h"
+#include "methods/spot/texton_noise.h"
 
 namespace textonbench::cli {
 namespace {
@@ -56,25 +57,34 @@ Fitted fit_to_exemplar(const ModelOptions& asked, bool quiet) {
   return {std::move(model), domain, std::chrono::duration<double>(Clock::now() - start).count()};
 }
 
-/// The noise of a texton that was fitted before, with the parameters that it was fitted with where none are given.
-Fitted read_fitted(const SynthOptions& options) {
-  const ModelOptions& asked = options.model;
-  const Clock::time_point start = Clock::now();
-  const bool is_text = options.model_file.extension() == ".texton";
-  ModelFile file = is_text ? read_texton_as_model(options.model_file) : read_model_file(options.model_file);
-  const std::vector<ParamSpec> specs = spot_noise_params("poisson");
+/// The parameters of the noise: given on the command line, or else those that the file was fitted with, or else
+/// defaults.
+Params noise_params(const std::vector<ParamSpec>& specs, const ModelFile& file, const ModelOptions& asked) {
   std::map<std::string, ParamValue> given;
   for (const ParamSpec& spec : specs) {
     if (const auto kept = file.params.find(std::string(spec.name)); kept != file.params.end()) given.insert(*kept);
   }
   for (auto& [name, value] : asked.given_params(specs)) given.insert_or_assign(name, value);
-  const SpotNoiseOptions noise = spot_noise_options(Params(specs, given), file.texton.support_pixels);
+  return {specs, given};
+}
+
+/// The noise of a texton that was fitted before.
+Fitted read_fitted(const SynthOptions& options) {
+  const ModelOptions& asked = options.model;
+  const Clock::time_point start = Clock::now();
+  const bool is_text = options.model_file.extension() == ".texton";
+  const ModelFile file = is_text ? read_texton_as_model(options.model_file) : read_model_file(options.model_file);
   const Extent asked_size = asked.read_size();
   const Domain domain{.size = asked_size.area() > 0 ? asked_size : Extent{512, 512}, .periodic = asked.periodic};
-  if (const std::optional<std::string> reason = refuse_spot_noise(file.texton.extent(), domain)) {
+  if (const std::optional<std::string> reason =
+          file.order ? refuse_spline_noise(domain) : refuse_spot_noise(file.texton.extent(), domain)) {
     throw std::invalid_argument(fmt::format("{} cannot do this: {}", options.model_file.string(), *reason));
   }
-  std::unique_ptr<Model> model = make_spot_noise(std::move(file.texton), noise);
+  const std::vector<ParamSpec> specs = file.order ? spline_noise_params() : spot_noise_params("poisson");
+  const Params params = noise_params(specs, file, asked);
+  std::unique_ptr<Model> model =
+      file.order ? make_spline_noise(file.spline_texton(), spline_noise_options(params))
+                 : make_spot_noise(file.texton, spot_noise_options(params, file.texton.support_pixels));
   return {std::move(model), domain, std::chrono::duration<double>(Clock::now() - start).count()};
 }
 
@@ -146,8 +156,8 @@ Command synth_command(CLI::App& app, const GlobalOptions& globals) {
   options->model.add_domain_to(*synth);
   synth->add_option(
       "--model", options->model_file,
-      "Instead of METHOD EXEMPLAR: a model that textonbench fit wrote (.json), or a .texton of order 0; -p "
-      "then takes impacts, mni, intensity and route, and a sample has 512x512 pixels without --size");
+      "Instead of METHOD EXEMPLAR: a model that textonbench fit wrote (.json), or a .texton; -p then takes "
+      "impacts, mni and route, and intensity, or cell for B-splines, and a sample has 512x512 pixels without --size");
   synth
       ->add_option(
           "-o,--output", options->output,

@@ -5,6 +5,7 @@
 #include "methods/spot/color_correction.h"
 #include "methods/spot/kernel_moments.h"
 #include "methods/spot/optimal_texton.h"
+#include "methods/spot/spline_moments.h"
 #include "methods/spot/texton_mix.h"
 
 namespace textonbench {
@@ -29,31 +30,50 @@ Image support_mask(const Texton& texton) {
   return mask;
 }
 
+/// What a model sums: kernels on Z², or the coefficients of B-splines.
+struct SummedTexton {
+  const Texton* texton = nullptr;  ///< nothing when it sums neither
+  int order = 0;                   ///< of the splines; 0 for kernels on Z², whose noise there has the same law
+};
+
+SummedTexton summed_texton(const Model& model) {
+  const SplineTexton* spline = model.spline_texton();
+  return spline != nullptr ? SummedTexton{&spline->coefficients, spline->order} : SummedTexton{model.texton()};
+}
+
 }  // namespace
 
 std::optional<double> kept_variance(const Model& model, const Target& target, const Domain&) {
-  if (model.texton() == nullptr) return std::nullopt;
-  return color_covariance(*model.texton()).trace() / color_covariance(target.gaussian.spectrum).trace();
+  const SummedTexton summed = summed_texton(model);
+  if (summed.texton == nullptr) return std::nullopt;
+  return color_covariance(*summed.texton, summed.order).trace() / color_covariance(target.gaussian.spectrum).trace();
 }
 
 std::optional<double> rme_corrected(const Model& model, const Target& target, const Domain&) {
-  if (model.texton() == nullptr) return std::nullopt;
-  return correct_colors(*model.texton(), target.gaussian.spectrum, ColorCorrection::authors).rme_after;
+  const SummedTexton summed = summed_texton(model);
+  if (summed.texton == nullptr) return std::nullopt;
+  return correct_colors(*summed.texton, target.gaussian.spectrum, ColorCorrection::authors, summed.order).rme_after;
 }
 
 std::optional<double> rme_bound(const Model& model, const Target& target, const Domain&) {
-  if (model.texton() == nullptr) return std::nullopt;
-  return bound_texton_error(target.gaussian, support_mask(*model.texton()), {}, Seed{1}).rme;
+  const SummedTexton summed = summed_texton(model);
+  if (summed.texton == nullptr || summed.order > 0) return std::nullopt;
+  return bound_texton_error(target.gaussian, support_mask(*summed.texton), {}, Seed{1}).rme;
 }
 
 std::optional<double> kernel_kurtosis(const Model& model, const Target&, const Domain&) {
+  if (const SplineTexton* spline = model.spline_texton()) {
+    const std::vector<double> channels = spline_kurtosis(*spline);
+    return *std::ranges::max_element(channels);
+  }
   const Texton* texton = model.texton();
   if (texton == nullptr) return std::nullopt;
   const std::vector<double> channels = kernel_kurtosis(texton->kernels, texton->support_pixels);
   return *std::ranges::max_element(channels);
 }
 
-std::optional<double> poisson_impacts(const Model& model, const Target&, const Domain&) {
+std::optional<double> poisson_impacts(const Model& model, const Target& target, const Domain& domain) {
+  if (model.spline_texton() != nullptr) return *kernel_kurtosis(model, target, domain) / small_kurtosis;
   if (model.texton() == nullptr) return std::nullopt;
   return poisson_impacts_needed(*model.texton(), small_kurtosis);
 }

@@ -7,7 +7,9 @@
 #include <complex>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
+#include "methods/base/box_fft.h"
 #include "methods/base/parallel.h"
 
 namespace textonbench {
@@ -56,9 +58,10 @@ double energy_without_mean(const Spectrum& spectrum) {
 
 }  // namespace
 
-TransportObjective::TransportObjective(Spectrum target, const Image& mask)
+TransportObjective::TransportObjective(Spectrum target, const Image& mask, int order)
     : target_(std::move(target)),
       support_(mask, target_.channels(), target_.raster()),
+      gain_(order, target_.raster()),
       variance_(energy_without_mean(target_) / static_cast<double>(target_.raster().area())) {
   if (!(variance_ > 0 && std::isfinite(variance_))) {
     throw std::invalid_argument(
@@ -68,12 +71,12 @@ TransportObjective::TransportObjective(Spectrum target, const Image& mask)
 
 std::vector<Spectrum> TransportObjective::transform(std::span<const double> kernels) const {
   const std::size_t count = kernels.size() / support_.size();
-  Image image(target_.raster(), target_.channels());
+  Image image(support_.box(), target_.channels());
   std::vector<Spectrum> spectra;
   spectra.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
     support_.scatter(kernels.subspan(k * support_.size(), support_.size()), image);
-    spectra.push_back(forward_fft(image));
+    spectra.push_back(gain_.apply(forward_fft_of_box(image, target_.raster())));
   }
   return spectra;
 }
@@ -114,7 +117,10 @@ double TransportObjective::evaluate(std::span<const double> kernels, std::span<d
     for (int c = 0; c < target_.channels(); ++c) {
       spectra[k].at(c, 0, 0) = 0;
     }
-    support_.gather(inverse_fft(spectra[k]), 2 / variance_, gradient.subspan(k * support_.size(), support_.size()));
+    const Image sum_over_bins = unnormalized_inverse_fft_in_box(gain_.apply(std::move(spectra[k])), support_.box(),
+                                                                [](int, const BinBlock&) {});
+    support_.gather(sum_over_bins, 2 / (variance_ * static_cast<double>(target_.raster().area())),
+                    gradient.subspan(k * support_.size(), support_.size()));
   }
   return 1 + sum / (variance_ * static_cast<double>(target_.raster().area()));
 }
