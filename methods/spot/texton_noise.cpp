@@ -13,36 +13,7 @@ namespace {
 
 std::span<const ParamSpec> texton_noise_params() {
   static const std::vector<ParamSpec> specs = [] {
-    std::vector<ParamSpec> all = support_params(31);
-    all.push_back(
-        {.name = "order",
-         .default_value = std::int64_t{1},
-         .unit = "",
-         .help = "of the B-splines that the texton is made of; the noise has order − 1 continuous derivatives",
-         .min = 0,
-         .max = max_bspline_order});
-    all.push_back({.name = "fit",
-                   .default_value = std::string("projections"),
-                   .unit = "",
-                   .help = "projections: one texton by the paper's alternating projections; direct: textons that "
-                           "minimize the model error",
-                   .choices = {"projections", "direct"}});
-    std::ranges::copy(projection_params(), std::back_inserter(all));
-    all.push_back({.name = "kernels",
-                   .default_value = std::int64_t{1},
-                   .unit = "",
-                   .help = "number of textons, of which each impact takes one at the same cost a pixel; more than one "
-                           "with fit = direct",
-                   .min = 1,
-                   .max = 64});
-    all.push_back({.name = "evaluations",
-                   .default_value = std::int64_t{OptimalTextonOptions{}.evaluations},
-                   .unit = "",
-                   .help = "evaluations of the model error and its gradient that fit = direct may take",
-                   .min = 1,
-                   .max = 1e6});
-    all.push_back(constrainable_color_correction_param());
-    all.push_back(component_param());
+    std::vector<ParamSpec> all = texton_fit_params();
     std::ranges::copy(spline_noise_params(), std::back_inserter(all));
     return all;
   }();
@@ -81,8 +52,7 @@ std::optional<std::string> refuse_projections(const TextonNoiseOptions& options)
 }
 
 std::optional<std::string> refuse_texton_noise(const Problem& problem, const Params& params, const Domain& domain) {
-  support_of(params, problem.exemplar.pixels.extent());  // throws with the reason
-  if (auto reason = refuse_projections(texton_noise_options(params))) {
+  if (auto reason = refuse_texton_fit(problem, params)) {
     return reason;
   }
   if (domain.step != 1 && params.text("route") != "auto" && params.text("route") != "points") {
@@ -138,6 +108,48 @@ SplineTexton fit_texton_noise(const Exemplar& exemplar, const Support& support, 
           .support_area = spline_support_area(support, options.order)};
 }
 
+std::vector<ParamSpec> texton_fit_params() {
+  std::vector<ParamSpec> all = support_params(31);
+  all.push_back({.name = "order",
+                 .default_value = std::int64_t{1},
+                 .unit = "",
+                 .help = "of the B-splines that the texton is made of; the noise has order − 1 continuous derivatives",
+                 .min = 0,
+                 .max = max_bspline_order});
+  all.push_back({.name = "fit",
+                 .default_value = std::string("projections"),
+                 .unit = "",
+                 .help = "projections: one texton by the paper's alternating projections; direct: textons that "
+                         "minimize the model error",
+                 .choices = {"projections", "direct"}});
+  std::ranges::copy(projection_params(), std::back_inserter(all));
+  all.push_back({.name = "kernels",
+                 .default_value = std::int64_t{1},
+                 .unit = "",
+                 .help = "number of textons, of which each impact takes one at the same cost a pixel; more than one "
+                         "with fit = direct",
+                 .min = 1,
+                 .max = 64});
+  all.push_back({.name = "evaluations",
+                 .default_value = std::int64_t{OptimalTextonOptions{}.evaluations},
+                 .unit = "",
+                 .help = "evaluations of the model error and its gradient that fit = direct may take",
+                 .min = 1,
+                 .max = 1e6});
+  all.push_back(constrainable_color_correction_param());
+  all.push_back(component_param());
+  return all;
+}
+
+std::optional<std::string> refuse_texton_fit(const Problem& problem, const Params& params) {
+  support_of(params, problem.exemplar.pixels.extent());  // throws with the reason
+  return refuse_projections(texton_noise_options(params));
+}
+
+SplineTexton fit_texton_noise(const Exemplar& exemplar, const Params& params, Seed seed) {
+  return fit_texton_noise(exemplar, support_of(params, exemplar.pixels.extent()), texton_noise_options(params), seed);
+}
+
 std::vector<ParamSpec> spline_noise_params() {
   return {{.name = "impacts",
            .default_value = std::string("stratified"),
@@ -181,9 +193,7 @@ MethodEntry texton_noise_entry() {
           .refuses = refuse_texton_noise,
           .analyze = [](const Problem& problem, const Params& params, Seed seed) {
             require_usable(problem.exemplar);
-            const Support support = support_of(params, problem.exemplar.pixels.extent());
-            return make_spline_noise(fit_texton_noise(problem.exemplar, support, texton_noise_options(params), seed),
-                                     spline_noise_options(params));
+            return make_spline_noise(fit_texton_noise(problem.exemplar, params, seed), spline_noise_options(params));
           }};
 }
 

@@ -32,6 +32,11 @@ struct TextonNoiseOptions {
 SplineTexton fit_texton_noise(const Exemplar& exemplar, const Support& support, const TextonNoiseOptions& options,
                               Seed seed);
 
+/// The options of a fit, a reason why they do not go together, and the fit that they ask for.
+std::vector<ParamSpec> texton_fit_params();
+std::optional<std::string> refuse_texton_fit(const Problem& problem, const Params& params);
+SplineTexton fit_texton_noise(const Exemplar& exemplar, const Params& params, Seed seed);
+
 /// The options "impacts" (poisson|stratified|paper), "mni", "cell" and "route" of a noise of splines, and their values.
 std::vector<ParamSpec> spline_noise_params();
 SplineNoiseOptions spline_noise_options(const Params& params);
