@@ -18,7 +18,10 @@ constexpr std::int64_t tap_offset(int order) {
   return (order - order / 2) * plane_unit + (order % 2 == 0 ? plane_unit / 2 : 0);
 }
 
-inline float knot_position(std::int64_t d) { return static_cast<float>(d & (plane_unit - 1)) * 0x1p-22F; }
+/// Of a distance in plane units.
+inline float knot_position(std::int64_t d) {
+  return static_cast<float>(static_cast<std::int32_t>(d & (plane_unit - 1))) * 0x1p-22F;
+}
 
 /// First taps 0 … this − 1 along an axis have a tap on the kernel: the pixels that a kernel covers.
 inline Extent reach(const SplineTexton& texton) {
