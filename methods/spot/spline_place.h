@@ -40,8 +40,10 @@ inline PlaneRectangle reaching(int order, Extent reach, const PlaneRectangle& po
 template <int order>
 [[gnu::always_inline]] inline void spline_weights(float t, float* weights) {
   weights[0] = 1;
+#pragma GCC unroll 8
   for (int n = 1; n <= order; ++n) {
     float carried = 0;
+#pragma GCC unroll 8
     for (int i = 0; i < n; ++i) {
       const float share = weights[i] * (1.0F / static_cast<float>(n));
       weights[i] = carried + (static_cast<float>(i + 1) - t) * share;
@@ -56,6 +58,7 @@ template <int order>
 [[gnu::always_inline]] inline void spline_slopes(float t, float* weights) {
   spline_weights<order - 1>(t, weights);
   weights[order] = weights[order - 1];
+#pragma GCC unroll 8
   for (int i = order - 1; i > 0; --i) {
     weights[i] = weights[i - 1] - weights[i];
   }

@@ -51,6 +51,7 @@ template <int order, bool slope>
   } else {
     spline_weights<order>(knot_position(d), w);
   }
+#pragma GCC unroll 8
   for (int j = 0; j <= order; ++j) {
     weights[j][i] = w[j];
   }
@@ -89,9 +90,11 @@ template <int order, int lanes>
     }
     const float* from = data + taps.first[i];
     Tap value{};
+#pragma GCC unroll 8
     for (int j = 0; j <= order; ++j) {
       const Tap* row = reinterpret_cast<const Tap*>(from + j * row_stride);
       Tap blend = taps.wx[0][i] * row[0];
+#pragma GCC unroll 8
       for (int k = 1; k <= order; ++k) {
         blend += taps.wx[k][i] * row[k];
       }
