@@ -59,9 +59,9 @@ void require_spline_texton(const SplineTexton& texton) {
 }
 
 /// Cells of a Poisson process: the time of an evaluation is c (1 + r / a)² for the cells in reach and p MNI (1 + a /
-/// r)² for their impacts, least at a / r = (c / (p MNI))^(1/3). c / p = 6 is measured by benchmarks/texton_noise_bench
+/// r)² for their impacts, least at a / r = (c / (p MNI))^(1/3). c / p = 2 is measured by benchmarks/texton_noise_bench
 /// for single points.
-double best_cell(double mni) { return std::clamp(std::cbrt(6 / mni), 0.05, 1.0); }
+double best_cell(double mni) { return std::clamp(std::cbrt(2 / mni), 0.05, 1.0); }
 
 ImpactGrid make_grid(const SplineTexton& texton, const SplineNoiseOptions& options) {
   if (!(std::isfinite(options.mni) && options.mni > 0)) {
@@ -194,14 +194,14 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
     parallel_for(static_cast<int>((points.size() + block - 1) / block), [&](int i) {
       const std::size_t end = std::min(points.size(), (static_cast<std::size_t>(i) + 1) * block);
       std::vector<PlanePoint> run;
-      std::vector<float> sums;
+      AlignedBuffer<float> sums;
       for (std::size_t first = static_cast<std::size_t>(i) * block; first < end; first += run.size()) {
         run = run_of(points.subspan(first, end - first));
         points_.sum(grid_, key, run, derivative, sums);
         for (std::size_t k = 0; k < run.size(); ++k) {
           for (int c = 0; c < channels(); ++c) {
             out[static_cast<std::size_t>(c) * points.size() + first + k] =
-                sums[k * static_cast<std::size_t>(points_.lanes()) + static_cast<std::size_t>(c)];
+                sums.data()[k * static_cast<std::size_t>(points_.lanes()) + static_cast<std::size_t>(c)];
           }
         }
       }
@@ -228,7 +228,7 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
     Image out = Image::uninitialized(domain.size, channels());
     parallel_for((height + side - 1) / side, [&](int band) {
       std::vector<PlanePoint> tile;
-      std::vector<float> sums;
+      AlignedBuffer<float> sums;
       const int top = band * side;
       const int bottom = std::min(top + side, height);
       for (int column = 0; column < columns; ++column) {

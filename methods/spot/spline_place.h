@@ -18,7 +18,10 @@ constexpr std::int64_t tap_offset(int order) {
   return (order - order / 2) * plane_unit + (order % 2 == 0 ? plane_unit / 2 : 0);
 }
 
-inline float knot_position(std::int64_t d) { return static_cast<float>(d & (plane_unit - 1)) * 0x1p-22F; }
+/// Of a distance in plane units.
+inline float knot_position(std::int64_t d) {
+  return static_cast<float>(static_cast<std::int32_t>(d & (plane_unit - 1))) * 0x1p-22F;
+}
 
 /// First taps 0 … this − 1 along an axis have a tap on the kernel: the pixels that a kernel covers.
 inline Extent reach(const SplineTexton& texton) {
@@ -37,8 +40,10 @@ inline PlaneRectangle reaching(int order, Extent reach, const PlaneRectangle& po
 template <int order>
 [[gnu::always_inline]] inline void spline_weights(float t, float* weights) {
   weights[0] = 1;
+#pragma GCC unroll 8
   for (int n = 1; n <= order; ++n) {
     float carried = 0;
+#pragma GCC unroll 8
     for (int i = 0; i < n; ++i) {
       const float share = weights[i] * (1.0F / static_cast<float>(n));
       weights[i] = carried + (static_cast<float>(i + 1) - t) * share;
@@ -53,6 +58,7 @@ template <int order>
 [[gnu::always_inline]] inline void spline_slopes(float t, float* weights) {
   spline_weights<order - 1>(t, weights);
   weights[order] = weights[order - 1];
+#pragma GCC unroll 8
   for (int i = order - 1; i > 0; --i) {
     weights[i] = weights[i - 1] - weights[i];
   }

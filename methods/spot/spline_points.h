@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "methods/base/aligned_buffer.h"
 #include "methods/base/image.h"
@@ -27,10 +26,10 @@ class SplinePoints {
  public:
   SplinePoints(const SplineTexton& texton, double scale);
 
-  /// out[i * lanes() + c] = channel c at points[i], which should be near to each other: the impacts in reach of any of
-  /// them are drawn once.
+  /// out[i * lanes() + c] = channel c at points[i], which lie within 64 pixels of each other: the impacts in reach of
+  /// any of them are drawn once. `out` grows as needed.
   void sum(const ImpactGrid& grid, std::uint64_t key, std::span<const PlanePoint> points, Derivative derivative,
-           std::vector<float>& out) const;
+           AlignedBuffer<float>& out) const;
 
   /// Channels rounded up to 4 or 8.
   int lanes() const { return lanes_; }
