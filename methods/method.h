@@ -36,6 +36,7 @@ struct Domain {
 /// What a model is fitted to.
 struct Problem {
   const Exemplar& exemplar;
+  const Exemplar* second = nullptr;  ///< of a method with an option whose unit is "exemplar": what it names
 };
 
 /// The model's own second-order law, in closed form.

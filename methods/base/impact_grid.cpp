@@ -108,7 +108,7 @@ ImpactGrid::ImpactGrid(ImpactProcess process, double intensity, double side, int
   } else if (cell_mean() > max_cell_mean) {
     throw std::invalid_argument(fmt::format("cells of {} pixels with {} impacts each: expected a mean of at most {}",
                                             this->side(), cell_mean(), max_cell_mean));
-  } else if (process == ImpactProcess::poisson) {
+  } else if (process != ImpactProcess::paper) {
     thresholds_ = poisson_thresholds(cell_mean());
   }
 }
@@ -136,15 +136,19 @@ void ImpactGrid::visit_cell(std::uint64_t key, std::int64_t cx, std::int64_t cy,
     visit(impact_of(first[2], first[3], kernels_, first[0] >> 31U == 0 ? 1.0F : -1.0F));
     return;
   }
+  const bool is_signed = process_ == ImpactProcess::signed_poisson;
+  const auto visit_impact = [&](std::uint32_t u, std::uint32_t v) {
+    visit(impact_of(u, v, kernels_, is_signed && (v & 1U) != 0 ? -1.0F : 1.0F));
+  };
   const auto count = std::ranges::upper_bound(thresholds_, first[0]) - thresholds_.begin();
   if (count > 0) {
-    visit(impact_of(first[2], first[3], kernels_, 1));
+    visit_impact(first[2], first[3]);
   }
   for (std::ptrdiff_t i = 1; i < count; i += 2) {
     const auto block = words.block(static_cast<std::uint64_t>(i + 1) / 2);
-    visit(impact_of(block[0], block[1], kernels_, 1));
+    visit_impact(block[0], block[1]);
     if (i + 1 < count) {
-      visit(impact_of(block[2], block[3], kernels_, 1));
+      visit_impact(block[2], block[3]);
     }
   }
 }
@@ -165,7 +169,7 @@ void ImpactGrid::draw(std::uint64_t key, const PlaneRectangle& rectangle, std::v
         const std::int64_t x = cx * plane_side() + ((impact.x * side_) >> shift);
         const std::int64_t y = cy * plane_side() + ((impact.y * side_) >> shift);
         if (x >= rectangle.left && x < rectangle.right && y >= rectangle.top && y < rectangle.bottom) {
-          impacts.push_back({x, y, impact.kernel, impact.weight});
+          impacts.push_back({x, y, kernel_at_ ? kernel_at_(x, y) : impact.kernel, impact.weight});
         }
       });
     }

@@ -9,24 +9,28 @@
 // the coordinates as 64-bit integers and their low words first, so cells repeat after 2^64 of them along each axis:
 // beyond any coordinate that is allowed. Impact i of a cell is made of the words u = w_{2i+2} and v = w_{2i+3}: its
 // position is (u >> 8, v >> 8) 2^−24 cell sides, its kernel (((u & 255) << 8 | v & 255) K) >> 16.
-//   poisson     as many impacts as there are thresholds at most w_0 (poisson_thresholds)
-//   stratified  one impact, of weight −1 if the highest bit of w_0 is set
+//   poisson         as many impacts as there are thresholds at most w_0 (poisson_thresholds)
+//   signed_poisson  the same, of weight −1 where v is odd
+//   stratified      one impact, of weight −1 if the highest bit of w_0 is set
 // With K no power of two, a kernel's probability is off 1/K by at most 2^−16.
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "methods/base/random.h"
 
 namespace textonbench {
 
-/// poisson: an exact Poisson number of impacts a cell, of weight 1. stratified: one impact a cell, of weight ±1 with
-/// equal probability. paper: the shader of Texton Noise (CGF 2017) with its defects, for the claims about it: a cell's
-/// generator is a xorshift (13, 17, 5) started at Wang's hash of 1024 (cy mod 1024) + (cx mod 1024) + key, so the noise
-/// has a period of 1024 cells and the cells of key + 1 are those of key moved by one; and the number of impacts is a
-/// rounded Gaussian number (paper_count), set to 0 where it is negative.
-enum class ImpactProcess { poisson, stratified, paper };
+/// poisson: an exact Poisson number of impacts a cell, of weight 1. signed_poisson: of weight ±1 instead, so that sums
+/// have mean zero whatever the kernels. stratified: one impact a cell, of weight ±1 with equal probability. paper: the
+/// shader of Texton Noise (CGF 2017) with its defects, for the claims about it: a cell's generator is a xorshift (13,
+/// 17, 5) started at Wang's hash of 1024 (cy mod 1024) + (cx mod 1024) + key, so the noise has a period of 1024 cells
+/// and the cells of key + 1 are those of key moved by one; and the number of impacts is a rounded Gaussian number
+/// (paper_count), set to 0 where it is negative.
+enum class ImpactProcess { poisson, signed_poisson, stratified, paper };
 
 /// Greatest mean number of impacts a cell.
 constexpr double max_cell_mean = 600;
@@ -80,9 +84,16 @@ class ImpactGrid {
   /// Impacts a pixel: as asked for, or 1 / side² of stratified cells after rounding.
   double intensity() const { return intensity_; }
   /// Expected sum of weights a pixel.
-  double mean_weight() const { return process_ == ImpactProcess::stratified ? 0 : intensity_; }
+  double mean_weight() const {
+    return process_ == ImpactProcess::poisson || process_ == ImpactProcess::paper ? intensity_ : 0;
+  }
   /// Mean number of impacts a cell.
   double cell_mean() const { return intensity_ * side() * side(); }
+
+  /// From then on draw() gives an impact the kernel that this function tells for its place, in 2^−22 pixel.
+  void choose_kernels(std::function<std::int32_t(std::int64_t x, std::int64_t y)> kernel_at) {
+    kernel_at_ = std::move(kernel_at);
+  }
 
   /// Impacts of one cell, in their order, after those that are there.
   void draw_cell(std::uint64_t key, std::int64_t cx, std::int64_t cy, std::vector<CellImpact>& impacts) const;
@@ -110,7 +121,8 @@ class ImpactGrid {
   double intensity_;
   std::int64_t side_;  // in 1/1024 pixel
   std::uint32_t kernels_;
-  std::vector<std::uint32_t> thresholds_;  // of poisson
+  std::vector<std::uint32_t> thresholds_;  // of poisson and signed_poisson
+  std::function<std::int32_t(std::int64_t, std::int64_t)> kernel_at_;
 };
 
 }  // namespace textonbench

@@ -58,7 +58,10 @@ SotStart sot_start_of(const Params& params) {
 }
 
 ProjectedTexton fit_sot(const Exemplar& exemplar, const Support& support, const SotOptions& options, Seed seed) {
-  const GaussianModel model = fit_spot(exemplar, options.component);
+  return fit_sot(fit_spot(exemplar, options.component), support, options, seed);
+}
+
+ProjectedTexton fit_sot(const GaussianModel& model, const Support& support, const SotOptions& options, Seed seed) {
   const Spectrum& spot = model.spectrum.factors.front();
   const Spectrum start = options.start == SotStart::white ? white_start(spot, seed) : random_phase_start(spot, seed);
   ProjectedTexton result = alternate_projections(model, support, start, options.projections);

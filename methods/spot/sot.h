@@ -27,6 +27,8 @@ SotStart sot_start_of(const Params& params);
 /// start. Colors are corrected as those of the noise. Throws std::invalid_argument for an unusable exemplar, or as
 /// alternate_projections and correct_colors do.
 ProjectedTexton fit_sot(const Exemplar& exemplar, const Support& support, const SotOptions& options, Seed seed);
+/// The same for a model of rank one; options.component is not read.
+ProjectedTexton fit_sot(const GaussianModel& model, const Support& support, const SotOptions& options, Seed seed);
 
 MethodEntry sot_entry();
 

@@ -74,8 +74,21 @@ ImpactGrid make_grid(const SplineTexton& texton, const SplineNoiseOptions& optio
   const double paper_cell = 0.6;
   const double fallback = options.impacts == ImpactProcess::paper ? paper_cell : best_cell(options.mni);
   const double cell = options.cell > 0 ? options.cell : fallback;
-  return {options.impacts, options.mni / texton.support_area, cell * std::sqrt(texton.support_area),
-          static_cast<int>(texton.coefficients.kernels.size())};
+  ImpactGrid grid(options.impacts, options.mni / texton.support_area, cell * std::sqrt(texton.support_area),
+                  static_cast<int>(texton.coefficients.kernels.size()));
+  if (options.kernel_at) {
+    if (grid.mean_weight() != 0) {
+      throw std::invalid_argument("kernels chosen by place: expected impacts of random sign");
+    }
+    const Extent box = texton.coefficients.extent();
+    grid.choose_kernels([kernel_at = options.kernel_at, box](std::int64_t x, std::int64_t y) {
+      const auto center = [](std::int64_t corner, int size) {
+        return static_cast<double>(corner) / static_cast<double>(plane_unit) + (size - 1) / 2.0;
+      };
+      return kernel_at(center(x, box.width), center(y, box.height));
+    });
+  }
+  return grid;
 }
 
 class SplineNoise final : public Model, public Gaussian, public Procedural {
@@ -84,7 +97,8 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
       : texton_(std::move(texton)),
         options_(options),
         grid_(make_grid(texton_, options)),
-        scale_(std::sqrt(static_cast<double>(texton_.coefficients.kernels.size()) / grid_.intensity())),
+        scale_(std::sqrt((options.kernel_at ? 1.0 : static_cast<double>(texton_.coefficients.kernels.size())) /
+                         grid_.intensity())),
         points_(texton_, scale_),
         framed_(frame_coefficients(texton_, scale_)) {
     start_.reserve(texton_.coefficients.mean.size());
@@ -134,7 +148,7 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
     sum_at(points, key_of(seed), Derivative::y, out.subspan(out.size() / 2));
   }
 
-  const Gaussian* gaussian() const override { return this; }
+  const Gaussian* gaussian() const override { return options_.kernel_at ? nullptr : this; }
   const Procedural* procedural() const override { return this; }
   const Texton* texton() const override { return &texton_.coefficients; }
   std::vector<double> mean() const override { return texton_.coefficients.mean; }

@@ -5,6 +5,7 @@
 // with Poisson impacts (weights 1) or one signed impact a cell. Its covariance on any grid y + Z² is α * α~ * b.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,6 +25,9 @@ struct SplineNoiseOptions {
   double mni = 30;  ///< mean number of impacts whose kernel covers a point; above 0, below 1 allowed
   double cell = 0;  ///< side of the Poisson process' cells in sides of the support; 0: the measured optimum
   SplineRoute route = SplineRoute::automatic;
+  /// Number of the kernel that an impact takes whose kernel is centered at that point, in pixels, in place of one by
+  /// chance. Its impacts are signed, h_k is not scaled by sqrt(K), and the noise has no spectrum of its own.
+  std::function<int(double x, double y)> kernel_at = {};
 };
 
 /// Throws std::invalid_argument for coefficients of different sizes or not finite, an order out of range, or options

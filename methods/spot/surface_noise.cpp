@@ -84,6 +84,27 @@ std::vector<DrawnPoint> points_of_mesh(const TriangleMesh& mesh, const Domain& d
   return points;
 }
 
+std::optional<std::string> refuse_surface_domain(bool plane, const Domain& domain) {
+  if (domain.periodic) {
+    return "surface noise on a torus of pixels: its impacts are those of space; expected a domain that is not periodic";
+  }
+  if (!plane && domain.origin != Point2{}) {
+    return fmt::format("a picture of a surface starts at (0, 0), but ({}, {}) was asked for", domain.origin.x,
+                       domain.origin.y);
+  }
+  if (auto reason = refuse_spline_noise(domain)) {
+    return reason;
+  }
+  const double furthest =
+      std::max({std::abs(domain.origin.x), std::abs(domain.origin.x + domain.step * domain.size.width),
+                std::abs(domain.origin.y), std::abs(domain.origin.y + domain.step * domain.size.height)});
+  if (furthest > SurfaceSum::furthest_coordinate) {
+    return fmt::format("surface noise {} pixels from the origin: expected points within {}", furthest,
+                       SurfaceSum::furthest_coordinate);
+  }
+  return std::nullopt;
+}
+
 class SurfaceNoise final : public Model, public Gaussian {
  public:
   /// The plane when there is no mesh.
@@ -91,6 +112,9 @@ class SurfaceNoise final : public Model, public Gaussian {
       : sum_(std::move(texton), options), mni_(options.mni), mesh_(std::move(mesh)), tilt_(tilt) {}
 
   Image synthesize(const Domain& domain, Seed seed) const override {
+    if (const auto reason = refuse_surface_domain(!mesh_, domain)) {
+      throw std::invalid_argument(*reason);
+    }
     std::vector<DrawnPoint> drawn = mesh_ ? points_of_mesh(*mesh_, domain, tilt_) : points_of_plane(domain);
     // Tile by tile, so that consecutive points are near to each other.
     const int side = std::max(1, static_cast<int>(sum_.thickness() / (4 * domain.step)));
@@ -147,14 +171,7 @@ std::optional<std::string> refuse_surface_noise(const Problem& problem, const Pa
     return named ? fmt::format("mesh = {} with surface = {}: expected surface = mesh", params.text("mesh"), surface)
                  : "surface = mesh needs an OBJ file: -p mesh=FILE";
   }
-  if (domain.periodic) {
-    return "surface noise on a torus of pixels: its impacts are those of space; expected a domain that is not periodic";
-  }
-  if (surface != "plane" && domain.origin != Point2{}) {
-    return fmt::format("a picture of a {} starts at (0, 0), but ({}, {}) was asked for", surface, domain.origin.x,
-                       domain.origin.y);
-  }
-  return refuse_spline_noise(domain);
+  return refuse_surface_domain(surface == "plane", domain);
 }
 
 std::optional<TriangleMesh> mesh_of(const Params& params) {

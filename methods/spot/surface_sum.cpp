@@ -16,8 +16,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double farthest = 1 << 20;
-
 double require_between(std::string_view what, double value, double least, double most) {
   if (!(value >= least && value <= most)) {
     throw std::invalid_argument(fmt::format("surface noise: {} {}, expected {} to {}", what, value, least, most));
@@ -72,8 +70,8 @@ SpaceGrid::SpaceGrid(ImpactProcess process, double intensity, double side, int k
       intensity_(intensity),
       side_(process == ImpactProcess::stratified ? std::cbrt(1 / intensity) : side),
       kernels_(static_cast<std::uint32_t>(kernels)) {
-  if (process == ImpactProcess::paper) {
-    throw std::invalid_argument("surface noise: no generator of the paper in space; expected poisson or stratified");
+  if (process != ImpactProcess::poisson && process != ImpactProcess::stratified) {
+    throw std::invalid_argument("surface noise: expected poisson or stratified impacts");
   }
   if (process == ImpactProcess::poisson) {
     thresholds_ = poisson_thresholds(
@@ -186,9 +184,10 @@ void SurfaceSum::evaluate_near(std::span<const SurfacePoint> points, const Strea
 
 void SurfaceSum::evaluate(std::span<const SurfacePoint> points, Seed seed, std::span<float> out) const {
   for (const SurfacePoint& point : points) {
-    if (!point.position.allFinite() || point.position.cwiseAbs().maxCoeff() > farthest) {
+    if (!point.position.allFinite() || point.position.cwiseAbs().maxCoeff() > furthest_coordinate) {
       throw std::invalid_argument(fmt::format("surface noise: point ({}, {}, {}), expected coordinates within ±{}",
-                                              point.position.x(), point.position.y(), point.position.z(), farthest));
+                                              point.position.x(), point.position.y(), point.position.z(),
+                                              furthest_coordinate));
     }
   }
   const Stream stream = Stream(seed).child("surface");

@@ -63,12 +63,14 @@ struct SurfaceSumOptions {
 
 class SurfaceSum {
  public:
+  static constexpr double furthest_coordinate = 1 << 20;  ///< pixels
+
   /// Throws std::invalid_argument for options out of range.
   SurfaceSum(SplineTexton texton, const SurfaceSumOptions& options);
 
   /// out[c * points.size() + i] = channel c at points[i], in pixels of the exemplar. Quick where consecutive points are
   /// near to each other; the bits of a value depend on its own point alone. Throws std::invalid_argument for a point
-  /// that is not finite or beyond 2^20 from the origin.
+  /// that is not finite or beyond furthest_coordinate.
   void evaluate(std::span<const SurfacePoint> points, Seed seed, std::span<float> out) const;
 
   const SplineTexton& texton() const { return texton_; }

@@ -63,9 +63,10 @@ std::optional<std::string> refuse_texton_noise(const Problem& problem, const Par
 }
 
 ImpactProcess impact_process_named(const std::string& name) {
-  return name == "poisson"      ? ImpactProcess::poisson
-         : name == "stratified" ? ImpactProcess::stratified
-                                : ImpactProcess::paper;
+  return name == "poisson"          ? ImpactProcess::poisson
+         : name == "signed_poisson" ? ImpactProcess::signed_poisson
+         : name == "stratified"     ? ImpactProcess::stratified
+                                    : ImpactProcess::paper;
 }
 
 SplineRoute spline_route_named(const std::string& name) {
@@ -108,14 +109,18 @@ SplineTexton fit_texton_noise(const Exemplar& exemplar, const Support& support, 
           .support_area = spline_support_area(support, options.order)};
 }
 
+ParamSpec spline_order_param() {
+  return {.name = "order",
+          .default_value = std::int64_t{1},
+          .unit = "",
+          .help = "of the B-splines that the texton is made of; the noise has order − 1 continuous derivatives",
+          .min = 0,
+          .max = max_bspline_order};
+}
+
 std::vector<ParamSpec> texton_fit_params() {
   std::vector<ParamSpec> all = support_params(31);
-  all.push_back({.name = "order",
-                 .default_value = std::int64_t{1},
-                 .unit = "",
-                 .help = "of the B-splines that the texton is made of; the noise has order − 1 continuous derivatives",
-                 .min = 0,
-                 .max = max_bspline_order});
+  all.push_back(spline_order_param());
   all.push_back({.name = "fit",
                  .default_value = std::string("projections"),
                  .unit = "",
@@ -151,31 +156,32 @@ SplineTexton fit_texton_noise(const Exemplar& exemplar, const Params& params, Se
 }
 
 std::vector<ParamSpec> spline_noise_params() {
-  return {{.name = "impacts",
-           .default_value = std::string("stratified"),
-           .unit = "",
-           .help = "where kernels fall: one of random sign in each cell of a lattice (stratified); at the points of a "
-                   "Poisson process, which takes about six times as many to look as Gaussian; or as the paper's shader "
-                   "draws them, with its defects",
-           .choices = {"poisson", "stratified", "paper"}},
-          {.name = "mni",
-           .default_value = 5.0,
-           .unit = "impact",
-           .help = "mean number of impacts that cover a point; the paper takes 30 of poisson impacts",
-           .min = 1e-6,
-           .max = 1e6},
-          {.name = "cell",
-           .default_value = 0.0,
-           .unit = "support side",
-           .help = "side of the cells that poisson and paper impacts are drawn by; 0: the fastest, 0.6 for paper",
-           .min = 0,
-           .max = 16},
-          {.name = "route",
-           .default_value = std::string("auto"),
-           .unit = "",
-           .help = "how a raster is computed: point by point (any step), row by row of each impact, by Fourier "
-                   "transform of the impacts (convolution), or the fastest of them",
-           .choices = {"auto", "points", "impacts", "convolution"}}};
+  return {
+      {.name = "impacts",
+       .default_value = std::string("stratified"),
+       .unit = "",
+       .help = "where kernels fall: one of random sign in each cell of a lattice (stratified); at the points of a "
+               "Poisson process, which takes about six times as many to look as Gaussian, all of weight 1 (poisson) "
+               "or of random sign (signed_poisson); or as the paper's shader draws them, with its defects",
+       .choices = {"poisson", "signed_poisson", "stratified", "paper"}},
+      {.name = "mni",
+       .default_value = 5.0,
+       .unit = "impact",
+       .help = "mean number of impacts that cover a point; the paper takes 30 of poisson impacts",
+       .min = 1e-6,
+       .max = 1e6},
+      {.name = "cell",
+       .default_value = 0.0,
+       .unit = "support side",
+       .help = "side of the cells that poisson and paper impacts are drawn by; 0: the fastest, 0.6 for paper",
+       .min = 0,
+       .max = 16},
+      {.name = "route",
+       .default_value = std::string("auto"),
+       .unit = "",
+       .help = "how a raster is computed: point by point (any step), row by row of each impact, by Fourier "
+               "transform of the impacts (convolution), or the fastest of them",
+       .choices = {"auto", "points", "impacts", "convolution"}}};
 }
 
 SplineNoiseOptions spline_noise_options(const Params& params) {

@@ -32,6 +32,9 @@ struct TextonNoiseOptions {
 SplineTexton fit_texton_noise(const Exemplar& exemplar, const Support& support, const TextonNoiseOptions& options,
                               Seed seed);
 
+/// The option "order".
+ParamSpec spline_order_param();
+
 /// The options of a fit, a reason why they do not go together, and the fit that they ask for.
 std::vector<ParamSpec> texton_fit_params();
 std::optional<std::string> refuse_texton_fit(const Problem& problem, const Params& params);

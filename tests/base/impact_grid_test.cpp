@@ -115,11 +115,40 @@ TEST(ImpactGrid, NumbersArePoissonAndCellsIndependent) {
   }
 }
 
+TEST(ImpactGrid, SignsLeaveThePlacesAsTheyAre) {
+  const ImpactGrid plain(ImpactProcess::poisson, 0.1, 10, 3);
+  const ImpactGrid with_signs(ImpactProcess::signed_poisson, 0.1, 10, 3);
+  EXPECT_EQ(with_signs.mean_weight(), 0);
+  for (int i = 0; i < 100; ++i) {
+    const auto expected = cell(plain, i, -i);
+    const auto found = cell(with_signs, i, -i);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t j = 0; j < found.size(); ++j) {
+      EXPECT_EQ(found[j].x, expected[j].x);
+      EXPECT_EQ(found[j].y, expected[j].y);
+      EXPECT_EQ(std::abs(found[j].weight), 1);
+    }
+  }
+}
+
+TEST(ImpactGrid, KernelsCanBeChosenByPlace) {
+  ImpactGrid grid(ImpactProcess::stratified, 0.01, 0, 5);
+  grid.choose_kernels([](std::int64_t x, std::int64_t) { return x < 0 ? 1 : 4; });
+  std::vector<PlaneImpact> impacts;
+  const std::int64_t reach = std::int64_t{100} << plane_bits;
+  grid.draw(7, {-reach, -reach, reach, reach}, impacts);
+  EXPECT_GT(impacts.size(), 300U);
+  for (const PlaneImpact& impact : impacts) {
+    EXPECT_EQ(impact.kernel, impact.x < 0 ? 1 : 4);
+  }
+}
+
 TEST(ImpactGrid, PositionsKernelsAndSignsAreUniformAndIndependent) {
   const ImpactGrid poisson(ImpactProcess::poisson, 0.1, 10, 3);
   const ImpactGrid stratified(ImpactProcess::stratified, 0.1, 0, 3);
   const ImpactGrid paper(ImpactProcess::paper, 0.1, 10, 3);
-  for (const ImpactGrid* grid : {&poisson, &stratified, &paper}) {
+  const ImpactGrid with_signs(ImpactProcess::signed_poisson, 0.1, 10, 3);
+  for (const ImpactGrid* grid : {&poisson, &with_signs, &stratified, &paper}) {
     // 16 x 16 places, 3 kernels, 2 signs; of an impact, and of its place with that of the next one drawn.
     std::vector<double> counts(256 * 6);
     std::vector<double> pairs(256 * 256);
@@ -138,7 +167,7 @@ TEST(ImpactGrid, PositionsKernelsAndSignsAreUniformAndIndependent) {
     }
     std::vector<double> drawn;
     for (std::size_t i = 0; i < counts.size(); ++i) {
-      if (grid == &stratified || i % 2 == 0) {
+      if (grid == &stratified || grid == &with_signs || i % 2 == 0) {
         drawn.push_back(counts[i]);
       } else {
         EXPECT_EQ(counts[i], 0);
