@@ -8,6 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "methods/base/box_fft.h"
 #include "methods/base/parallel.h"
 
 namespace textonbench {
@@ -68,12 +69,12 @@ TransportObjective::TransportObjective(Spectrum target, const Image& mask)
 
 std::vector<Spectrum> TransportObjective::transform(std::span<const double> kernels) const {
   const std::size_t count = kernels.size() / support_.size();
-  Image image(target_.raster(), target_.channels());
+  Image image(support_.box(), target_.channels());
   std::vector<Spectrum> spectra;
   spectra.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
     support_.scatter(kernels.subspan(k * support_.size(), support_.size()), image);
-    spectra.push_back(forward_fft(image));
+    spectra.push_back(forward_fft_of_box(image, target_.raster()));
   }
   return spectra;
 }
@@ -110,11 +111,13 @@ double TransportObjective::evaluate(std::span<const double> kernels, std::span<d
     }
     return row_sum;
   });
+  const double scale = 2 / (variance_ * static_cast<double>(target_.raster().area()));
   for (std::size_t k = 0; k < spectra.size(); ++k) {
     for (int c = 0; c < target_.channels(); ++c) {
       spectra[k].at(c, 0, 0) = 0;
     }
-    support_.gather(inverse_fft(spectra[k]), 2 / variance_, gradient.subspan(k * support_.size(), support_.size()));
+    const Image part = unnormalized_inverse_fft_in_box(spectra[k], support_.box(), [](int, const BinBlock&) {});
+    support_.gather(part, scale, gradient.subspan(k * support_.size(), support_.size()));
   }
   return 1 + sum / (variance_ * static_cast<double>(target_.raster().area()));
 }
