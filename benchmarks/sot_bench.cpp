@@ -7,26 +7,15 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <chrono>
 #include <vector>
 
+#include "benchmarks/timing.h"
 #include "methods/spot/alternating_projections.h"
 
 namespace textonbench {
 namespace {
 
 constexpr int iterations = 50;
-
-double seconds_of(const auto& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-  return values[values.size() / 2];
-}
 
 Image noise_image(Extent extent, int channels) {
   Image image(extent, channels);

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "experiments/metrics/gaussian_limit.h"
 #include "experiments/metrics/metric.h"
 #include "experiments/pictures.h"
 #include "experiments/provenance.h"
@@ -107,7 +108,7 @@ class Execution {
         return value ? std::optional(plain(*value)) : std::nullopt;
       }
       case MetricLevel::sample:
-        return measure_on_samples(metric);
+        return metric.of_limit != nullptr ? measure_against_limit(metric) : measure_on_samples(metric);
       case MetricLevel::cost:
         return plain(cost(metric.name));
     }
@@ -176,6 +177,19 @@ class Execution {
     return value;
   }
 
+  std::optional<MetricValue> measure_against_limit(const MetricEntry& metric) {
+    const auto statistic = metric.of_limit(*model_, domain_, derive(part("metric"), metric.name));
+    if (statistic == nullptr) return std::nullopt;
+    MetricValue value = measure_samples(*statistic, samples_, domain_);
+    const std::unique_ptr<Model> limit = gaussian_limit(*model_);
+    std::vector<Image> floor_samples;
+    for (int i = 0; i < spec_.samples; ++i) {
+      floor_samples.push_back(limit->synthesize(domain_, derive(part("limit"), static_cast<std::uint64_t>(i))));
+    }
+    value.floor = measure_samples(*statistic, floor_samples, domain_).value;
+    return value;
+  }
+
   /// Samples of the exact Gaussian law of the target: circular ADSN of the periodic component on the exemplar's torus,
   /// or its non-circular form on the run's own window.
   void make_floor_samples() {
@@ -236,6 +250,9 @@ Record execute(const RunSpec& spec, const ExemplarInfo& info, const ResultsFolde
                                             spec.exemplar_sha256, exemplar.sha256));
   }
   require_usable(exemplar);
+  if (hash_files(find_method(spec.method), spec.params) != spec.file_sha256) {
+    throw std::invalid_argument("a file that an option names has changed since the run was planned: plan it again");
+  }
 
   Execution execution(spec, exemplar);
   const std::optional<std::string> refusal = execution.refusal();

@@ -18,8 +18,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::string_view, 10> keys{"method",   "params", "exemplar", "exemplar_sha256", "size",
-                                                "periodic", "seed",   "samples",  "metrics",         "pictures"};
+constexpr std::array<std::string_view, 11> keys{"method",          "params",  "file_sha256", "exemplar",
+                                                "exemplar_sha256", "size",    "periodic",    "seed",
+                                                "samples",         "metrics", "pictures"};
 
 [[noreturn]] void refuse(std::string_view key, std::string_view expected, const Json& found) {
   throw std::invalid_argument(fmt::format("run spec: {}: expected {}, found {}", key, expected, found.dump()));
@@ -99,6 +100,23 @@ std::string quote(const std::string& word) {
 
 }  // namespace
 
+std::map<std::string, std::string> hash_files(const MethodEntry& method,
+                                              const std::map<std::string, ParamValue>& params) {
+  std::map<std::string, std::string> hashes;
+  for (const ParamSpec& option : method.params) {
+    const auto given = params.find(std::string(option.name));
+    if (option.unit != "file" || given == params.end()) continue;
+    const std::string& file = std::get<std::string>(given->second);
+    if (file.empty()) continue;
+    try {
+      hashes.emplace(option.name, sha256_of_file(file));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("option {}: {}", option.name, error.what()));
+    }
+  }
+  return hashes;
+}
+
 Json to_json(const RunSpec& spec) {
   Json params = Json::object();
   for (const auto& [name, value] : spec.params) {
@@ -107,6 +125,7 @@ Json to_json(const RunSpec& spec) {
   Json json;
   json["method"] = spec.method;
   json["params"] = std::move(params);
+  if (!spec.file_sha256.empty()) json["file_sha256"] = spec.file_sha256;
   json["exemplar"] = spec.exemplar;
   json["exemplar_sha256"] = spec.exemplar_sha256;
   json["size"] = {spec.size.width, spec.size.height};
@@ -135,6 +154,15 @@ RunSpec run_spec_from_json(const Json& json) {
   }
   for (const auto& [name, value] : params.items()) {
     spec.params.emplace(name, read_param(name, value));
+  }
+  if (json.contains("file_sha256")) {
+    const Json& hashes = json["file_sha256"];
+    if (!hashes.is_object()) {
+      refuse("file_sha256", "an object", hashes);
+    }
+    for (const auto& [name, hash] : hashes.items()) {
+      spec.file_sha256.emplace(name, read_text(hashes, name));
+    }
   }
   spec.exemplar = read_text(json, "exemplar");
   spec.exemplar_sha256 = read_text(json, "exemplar_sha256");

@@ -16,7 +16,8 @@ namespace textonbench {
 /// A model of one exemplar and what is measured on it. `samples` samples are drawn, with seeds derived from `seed`.
 struct RunSpec {
   std::string method;
-  std::map<std::string, ParamValue> params;  ///< complete: defaults included
+  std::map<std::string, ParamValue> params;        ///< complete: defaults included
+  std::map<std::string, std::string> file_sha256;  ///< of the file that an option names, by option (see hash_files)
   std::string exemplar;
   std::string exemplar_sha256;
   Extent size;  ///< of the samples; 0x0 means the exemplar's own size
@@ -30,7 +31,13 @@ struct RunSpec {
   int memory_limit_mb = 0;  ///< 0: a share of the machine's memory
 };
 
-/// JSON with a fixed key order; the limits are left out.
+/// SHA-256 of the file of every option that names one (its unit is "file" and it is not empty): two runs with the same
+/// path and other content are not the same. Throws std::invalid_argument with the option for a file that cannot be
+/// read.
+std::map<std::string, std::string> hash_files(const MethodEntry& method,
+                                              const std::map<std::string, ParamValue>& params);
+
+/// JSON with a fixed key order; the limits are left out, and file_sha256 where no option names a file.
 nlohmann::ordered_json to_json(const RunSpec& spec);
 /// Throws std::invalid_argument naming the key that is missing or wrong.
 RunSpec run_spec_from_json(const nlohmann::ordered_json& json);

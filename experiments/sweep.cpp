@@ -220,8 +220,11 @@ RunSpec Sweep::make_spec(const std::vector<std::size_t>& digits) const {
   for (std::size_t i = 0; i < params_.size(); ++i) {
     given.emplace(params_[i].first, params_[i].second[digits[first_param_axis + i]]);
   }
+  const std::map<std::string, ParamValue> params = Params(method.params, given).values();
+  std::map<std::string, std::string> files = at_place(table_, "params", [&] { return hash_files(method, params); });
   return {.method = std::string(method.name),
-          .params = Params(method.params, given).values(),
+          .params = params,
+          .file_sha256 = std::move(files),
           .exemplar = exemplar.info->name,
           .exemplar_sha256 = exemplar.sha256,
           .size = table_.sizes[digits[size_axis]],

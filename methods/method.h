@@ -73,6 +73,13 @@ struct Footprint {
   double operations_per_pixel = 0;
 };
 
+/// How an iterative analysis came to its result.
+struct Convergence {
+  std::string_view step;    ///< what is counted: "iteration" or "evaluation"
+  std::vector<double> rme;  ///< relative model error after each step, before any correction of colors
+  std::string_view reason;  ///< why it stopped: "iterations", "evaluations", "tolerance" or "no descent"
+};
+
 /// What analysis returns: immutable, safe to share between threads. A capability that a model lacks is a null pointer.
 class Model {
  public:
@@ -86,6 +93,8 @@ class Model {
   virtual const Texton* texton() const { return nullptr; }
   /// The coefficients that the model sums as B-splines, when it is a noise of the plane.
   virtual const SplineTexton* spline_texton() const { return nullptr; }
+  /// Of a model that an iteration fitted.
+  virtual const Convergence* convergence() const { return nullptr; }
   virtual Footprint footprint(const Domain& domain) const = 0;
 };
 

@@ -116,12 +116,12 @@ std::vector<const SelectedRun*> RunGroup::on(std::string_view exemplar) const {
   return chosen;
 }
 
-std::vector<RunGroup> group_runs(const std::vector<SelectedRun>& runs, const std::string& swept) {
+std::vector<RunGroup> group_runs(const std::vector<SelectedRun>& runs, const std::vector<std::string>& swept) {
   std::vector<Key> keys;
   std::vector<RunGroup> groups;
   for (const SelectedRun& run : runs) {
     Key key{run.label, attributes_of(*run.planned)};
-    key.attributes.erase(swept);
+    for (const std::string& name : swept) key.attributes.erase(name);
     const auto known = std::find(keys.begin(), keys.end(), key);
     const auto index = static_cast<std::size_t>(known - keys.begin());
     if (known == keys.end()) {

@@ -25,6 +25,7 @@ RunSpec make_spec(const MeasureOptions& options, const ExemplarInfo& exemplar) {
   RunSpec spec;
   spec.method = options.model.method;
   spec.params = options.model.read_params(method).values();
+  spec.file_sha256 = hash_files(method, spec.params);
   spec.exemplar = options.model.exemplar;
   spec.exemplar_sha256 = exemplar_sha256(exemplar);
   spec.size = options.model.read_size();

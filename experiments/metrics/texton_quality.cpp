@@ -1,12 +1,13 @@
 #include "experiments/metrics/texton_quality.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "methods/spot/color_correction.h"
 #include "methods/spot/kernel_moments.h"
 #include "methods/spot/optimal_texton.h"
 #include "methods/spot/spline_moments.h"
-#include "methods/spot/texton_mix.h"
+#include "methods/spot/spot_noise.h"
 
 namespace textonbench {
 namespace {
@@ -41,6 +42,21 @@ SummedTexton summed_texton(const Model& model) {
   return spline != nullptr ? SummedTexton{&spline->coefficients, spline->order} : SummedTexton{model.texton()};
 }
 
+CellLattice lattice_of(const SpotNoiseOptions& noise, const Texton& texton, const Domain& domain) {
+  return impact_lattice(noise.mni / static_cast<double>(texton.support_pixels), domain);
+}
+
+std::optional<KurtosisRange> local_kurtosis(const Model& model, const Domain& domain) {
+  const SpotNoiseOptions* noise = spot_noise_of(model);
+  if (noise == nullptr || noise->impacts != Impacts::stratified) return std::nullopt;
+  const Texton& texton = *model.texton();
+  KurtosisRange widest = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const KurtosisRange& range : StratifiedMoments(texton).range_on(lattice_of(*noise, texton, domain))) {
+    widest = {std::min(widest.least, range.least), std::max(widest.greatest, range.greatest)};
+  }
+  return widest;
+}
+
 }  // namespace
 
 std::optional<double> kept_variance(const Model& model, const Target& target, const Domain&) {
@@ -66,10 +82,32 @@ std::optional<double> kernel_kurtosis(const Model& model, const Target&, const D
     const std::vector<double> channels = spline_kurtosis(*spline);
     return *std::ranges::max_element(channels);
   }
-  const Texton* texton = model.texton();
-  if (texton == nullptr) return std::nullopt;
-  const std::vector<double> channels = kernel_kurtosis(texton->kernels, texton->support_pixels);
-  return *std::ranges::max_element(channels);
+  if (model.texton() == nullptr) return std::nullopt;
+  const std::vector<NoiseMoments> channels = poisson_moments(*model.texton(), 1);
+  return std::ranges::max_element(channels, {}, &NoiseMoments::excess_kurtosis)->excess_kurtosis;
+}
+
+std::optional<double> predicted_kurtosis(const Model& model, const Target&, const Domain& domain) {
+  const SpotNoiseOptions* noise = spot_noise_of(model);
+  if (noise == nullptr) return std::nullopt;
+  if (noise->impacts == Impacts::gaussian) return 0;
+  const Texton& texton = *model.texton();
+  const std::vector<NoiseMoments> channels = noise->impacts == Impacts::poisson
+                                                 ? poisson_moments(texton, noise->mni)
+                                                 : StratifiedMoments(texton).on(lattice_of(*noise, texton, domain));
+  double sum = 0;
+  for (const NoiseMoments& channel : channels) sum += channel.excess_kurtosis;
+  return sum / static_cast<double>(channels.size());
+}
+
+std::optional<double> local_kurtosis_least(const Model& model, const Target&, const Domain& domain) {
+  const auto range = local_kurtosis(model, domain);
+  return range ? std::optional(range->least) : std::nullopt;
+}
+
+std::optional<double> local_kurtosis_greatest(const Model& model, const Target&, const Domain& domain) {
+  const auto range = local_kurtosis(model, domain);
+  return range ? std::optional(range->greatest) : std::nullopt;
 }
 
 std::optional<double> poisson_impacts(const Model& model, const Target& target, const Domain& domain) {

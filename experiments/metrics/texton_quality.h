@@ -24,6 +24,14 @@ std::optional<double> rme_bound(const Model& model, const Target& target, const 
 /// the excess kurtosis of Poisson impacts is κ / MNI.
 std::optional<double> kernel_kurtosis(const Model& model, const Target& target, const Domain& domain);
 
+/// Excess kurtosis of the model's own impacts, the mean over channels: what `excess_kurtosis` estimates.
+std::optional<double> predicted_kurtosis(const Model& model, const Target& target, const Domain& domain);
+
+/// Of stratified impacts, whose fourth order follows their cells: the least and the greatest local excess kurtosis,
+/// over channels and over pixels of three cells. Nothing for other impacts, which are stationary.
+std::optional<double> local_kurtosis_least(const Model& model, const Target& target, const Domain& domain);
+std::optional<double> local_kurtosis_greatest(const Model& model, const Target& target, const Domain& domain);
+
 /// The least MNI from which on |excess kurtosis| < 0.1 in every channel (methods/spot/kernel_moments.h).
 std::optional<double> poisson_impacts(const Model& model, const Target& target, const Domain& domain);
 /// The same for stratified impacts; nothing for B-splines, of which no closed form is at hand.

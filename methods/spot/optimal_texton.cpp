@@ -87,6 +87,7 @@ LbfgsSummary minimize_constrained(const TransportObjective& objective, const Col
     const LbfgsSummary part = minimize_lbfgs(
         [&](std::span<const double> at, std::span<double> gradient) {
           const double error = objective.evaluate(at, gradient);
+          total.history.push_back(error);
           const Eigen::MatrixXd c = residual(at);
           residual.add_gradient(at, multipliers + penalty * c, gradient);
           return error + multipliers.cwiseProduct(c).sum() + penalty / 2 * c.squaredNorm();
@@ -94,7 +95,6 @@ LbfgsSummary minimize_constrained(const TransportObjective& objective, const Col
         {.evaluations = std::max(1, evaluations / rounds), .first_step = objective.projection_step()}, x);
     multipliers += penalty * residual(x);
     total.evaluations += part.evaluations;
-    total.history.insert(total.history.end(), part.history.begin(), part.history.end());
     total.reason = part.reason;
   }
   total.gradient.resize(x.size());
@@ -161,7 +161,9 @@ std::unique_ptr<Model> analyze_optimal_texton(const Problem& problem, const Para
   if (params.text("color_correction") == "authors" || params.text("color_correction") == "transport") {
     fitted.texton = correct_colors(std::move(fitted.texton), model.spectrum, color_correction_of(params)).texton;
   }
-  return make_spot_noise(std::move(fitted.texton), spot_noise_options(params, support.pixels));
+  Convergence convergence{.step = "evaluation", .rme = std::move(fitted.history), .reason = fitted.reason};
+  for (double& value : convergence.rme) value = std::sqrt(std::max(0.0, value));
+  return make_spot_noise(std::move(fitted.texton), spot_noise_options(params, support.pixels), std::move(convergence));
 }
 
 }  // namespace
@@ -184,6 +186,7 @@ OptimalTexton fit_optimal_texton(const GaussianModel& model, const Image& mask, 
   result.stationarity = std::inner_product(x.begin(), x.end(), summary.gradient.begin(), 0.0) / 2;
   result.evaluations = summary.evaluations;
   result.history = std::move(summary.history);
+  result.reason = summary.reason;
   mix_textons(x, options.kernels, objective.support().channels());
   result.texton = {objective.images(x), objective.support().pixels(), model.mean};
   if (options.keep_color_covariance) {

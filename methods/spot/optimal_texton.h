@@ -9,6 +9,7 @@
 // Our own step beyond EUSIPCO 2014, whose alternating projections are gradient descent of the same function for K = 1.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "methods/base/gaussian_model.h"
@@ -37,7 +38,8 @@ struct OptimalTexton {
   /// r = (Σ_k Σ_x h_k ∂RME²/∂h_k) / 2: zero where no scaling of the textons gains.
   double stationarity = 0;
   int evaluations = 0;
-  std::vector<double> history;  ///< lowest RME² after each evaluation
+  std::vector<double> history;  ///< lowest RME² after each evaluation; under the constraint of colors, that of each
+  std::string_view reason;      ///< why the last minimization stopped (lbfgs.h)
 };
 
 /// Textons on the pixels of `mask` (one channel, not zero inside, at most as large as the exemplar) for a Gaussian

@@ -86,8 +86,12 @@ MethodEntry sot_entry() {
               [](const Problem& problem, const Params& params, Seed seed) {
                 require_usable(problem.exemplar);
                 const Support support = support_of(params, problem.exemplar.pixels.extent());
-                return make_spot_noise(fit_sot(problem.exemplar, support, options_of(params), seed).texton,
-                                       spot_noise_options(params, support.pixels));
+                ProjectedTexton fitted = fit_sot(problem.exemplar, support, options_of(params), seed);
+                const bool tolerable = fitted.summary.stop == ProjectionSummary::Stop::tolerance;
+                return make_spot_noise(std::move(fitted.texton), spot_noise_options(params, support.pixels),
+                                       Convergence{.step = "iteration",
+                                                   .rme = std::move(fitted.summary.rme),
+                                                   .reason = tolerable ? "tolerance" : "iterations"});
               }};
 }
 

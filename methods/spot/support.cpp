@@ -163,7 +163,7 @@ std::vector<ParamSpec> support_params(int default_support) {
            .choices = {"square", "disc", "mask"}},
           {.name = "mask",
            .default_value = std::string(),
-           .unit = "",
+           .unit = "file",
            .help = "image file of the support when shape is mask"}};
 }
 

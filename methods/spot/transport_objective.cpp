@@ -113,14 +113,14 @@ double TransportObjective::evaluate(std::span<const double> kernels, std::span<d
     }
     return row_sum;
   });
+  const double scale = 2 / (variance_ * static_cast<double>(target_.raster().area()));
   for (std::size_t k = 0; k < spectra.size(); ++k) {
     for (int c = 0; c < target_.channels(); ++c) {
       spectra[k].at(c, 0, 0) = 0;
     }
     const Image sum_over_bins = unnormalized_inverse_fft_in_box(gain_.apply(std::move(spectra[k])), support_.box(),
                                                                 [](int, const BinBlock&) {});
-    support_.gather(sum_over_bins, 2 / (variance_ * static_cast<double>(target_.raster().area())),
-                    gradient.subspan(k * support_.size(), support_.size()));
+    support_.gather(sum_over_bins, scale, gradient.subspan(k * support_.size(), support_.size()));
   }
   return 1 + sum / (variance_ * static_cast<double>(target_.raster().area()));
 }

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "experiments/metrics/metric.h"
+#include "experiments/provenance.h"
 #include "tests/experiments/exemplar_home.h"
 
 namespace textonbench::plan_test {
@@ -287,6 +288,20 @@ TEST_F(PlanTest, AHundredThousandRunsHaveIdsOfTheirOwn) {
 }
 
 /// A run's identity comes from the run alone, never from what else is planned.
+TEST_F(PlanTest, ChangedContentOfAFileThatAnOptionNamesIsAnotherRun) {
+  const std::filesystem::path mask = home_.path() / "mask.png";
+  const std::string table = fmt::format(
+      "method = \"sot\"\nexemplars = \"ring\"\nparams.shape = \"mask\"\nparams.mask = \"{}\"", mask.string());
+  EXPECT_THAT(table_error(table), AllOf(HasSubstr("option mask: "), HasSubstr("mask.png: cannot be read")));
+  std::ofstream(mask) << "one";
+  const PlannedRun before = plan_table(table).runs.at(0);
+  EXPECT_EQ(before.spec.file_sha256, (std::map<std::string, std::string>{{"mask", sha256("one")}}));
+  EXPECT_EQ(plan_table(table).runs.at(0).id, before.id);
+  EXPECT_EQ(run_id(run_spec_from_json(to_json(before.spec))), before.id);
+  std::ofstream(mask) << "two";
+  EXPECT_NE(plan_table(table).runs.at(0).id, before.id);
+}
+
 TEST_F(PlanTest, AnotherRunDoesNotChangeAnId) {
   const Plan one = plan_table(rpn_ + "seeds = 2");
   const Plan many = plan_table("method = [\"adsn\", \"rpn\"]\nexemplars = [\"grass\", \"ring\"]\nseeds = [1, 2]");

@@ -6,8 +6,8 @@
 #include "methods/base/image_io.h"
 #include "methods/base/spectrum.h"
 #include "methods/spot/color_correction.h"
+#include "methods/spot/kernel_moments.h"
 #include "methods/spot/texton_error.h"
-#include "methods/spot/texton_mix.h"
 #include "tests/methods/plane_waves.h"
 
 namespace textonbench::optimal_texton_test {
@@ -139,8 +139,8 @@ TEST(OptimalTexton, KernelsAreFeaturelessAndOfEqualEnergy) {
   const GaussianModel model = smooth_model({96, 96}, 3);
   const OptimalTexton one = fit_optimal_texton(model, full_mask({21, 21}), {.kernels = 1}, Seed{2});
   const OptimalTexton four = fit_optimal_texton(model, full_mask({21, 21}), {.kernels = 4}, Seed{2});
-  const double of_one = kernel_kurtosis(one.texton.kernels, 441)[0];
-  const double of_four = kernel_kurtosis(four.texton.kernels, 441)[0];
+  const double of_one = poisson_moments(one.texton, 1)[0].excess_kurtosis;
+  const double of_four = poisson_moments(four.texton, 1)[0].excess_kurtosis;
   EXPECT_LT(of_four, 1.5 * of_one);
   std::vector<double> energies;
   for (const Image& kernel : four.texton.kernels) {
