@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "experiments/metrics/model_error.h"
 #include "methods/method.h"
 #include "tests/texture.h"
 
@@ -45,6 +46,31 @@ TEST_F(TextonQuality, ImpactsNeededFollowFromTheKurtosisOfTheKernel) {
   EXPECT_GT(kurtosis, 1);
   EXPECT_NEAR(*poisson_impacts(*model, target_, domain_), kurtosis / 0.1, 1e-6 * kurtosis);
   EXPECT_LT(*stratified_impacts(*model, target_, domain_), *poisson_impacts(*model, target_, domain_));
+}
+
+TEST_F(TextonQuality, OfSplinesIsThatOfTheirNoise) {
+  const std::map<std::string, ParamValue> support{{"support", std::int64_t{9}}};
+  const auto sot = fit("sot", support);
+  for (const int order : {0, 1, 3}) {
+    std::map<std::string, ParamValue> given = support;
+    given["order"] = std::int64_t{order};
+    const auto model = fit("texton_noise", given);
+    const double error = relative_model_error(model->gaussian()->spectrum({26, 22}), target_.gaussian.spectrum);
+    EXPECT_NEAR(*rme(*model, target_, domain_), error, 1e-12);
+    const double variance = *kept_variance(*model, target_, domain_);
+    EXPECT_LT(variance, 1);
+    EXPECT_NEAR(variance, *kept_variance(*sot, target_, domain_), 0.1) << order;
+    EXPECT_GE(*rme_corrected(*model, target_, domain_), error - 1e-6);
+    EXPECT_GT(*kernel_kurtosis(*model, target_, domain_), 1);
+    EXPECT_NEAR(*poisson_impacts(*model, target_, domain_), *kernel_kurtosis(*model, target_, domain_) / 0.1, 1e-9);
+    EXPECT_FALSE(stratified_impacts(*model, target_, domain_));
+    EXPECT_EQ(rme_bound(*model, target_, domain_).has_value(), order == 0);
+    if (order == 0) {
+      EXPECT_EQ(variance, *kept_variance(*sot, target_, domain_));
+      EXPECT_EQ(*rme_corrected(*model, target_, domain_), *rme_corrected(*sot, target_, domain_));
+      EXPECT_NEAR(*kernel_kurtosis(*model, target_, domain_), *kernel_kurtosis(*sot, target_, domain_), 1e-9);
+    }
+  }
 }
 
 TEST_F(TextonQuality, AModelWithoutATextonHasNone) {
