@@ -133,7 +133,7 @@ TEST_F(ModelFileTest, SplinesKeepTheirOrderAndArea) {
 }
 
 TEST_F(ModelFileTest, ATextonIsAModelOfOneKernelWithoutItsFrame) {
-  const Image& kernel = example().texton.kernels[0];
+  const Image kernel = example().texton.kernels[0];
   write_texton_file({.order = 0, .mean = {0.5, 0.25, 1}, .coefficients = kernel, .source = "s"},
                     folder_.path() / "a.texton");
   const ModelFile model = read_texton_as_model(folder_.path() / "a.texton");
@@ -172,8 +172,9 @@ TEST_F(ModelFileTest, PublishedTextonsHaveTheErrorsAndColorsOfTheReference) {
     GTEST_SKIP() << "set TEXTONBENCH_DATA and TEXTONBENCH_REFERENCE to folders with textons and their errors";
   }
   std::ifstream in(std::filesystem::path(reference) / "published_textons_rme.json");
+  const Json published = Json::parse(in);
   int compared = 0;
-  for (const Json& row : Json::parse(in).at("rows")) {
+  for (const Json& row : published.at("rows")) {
     const std::string name = row.at("name").get<std::string>();
     const std::filesystem::path texton_file =
         std::filesystem::path(data) / "textons" / (name + "_s" + std::to_string(row.at("s").get<int>()) + ".texton");
