@@ -23,9 +23,9 @@ struct ModelFile {
   std::map<std::string, ParamValue> params;  ///< complete
   std::string exemplar, exemplar_sha256;
   std::uint64_t seed = 1;
-  Texton texton;             ///< kernels of a spot noise on Z², or coefficients of B-splines
-  std::optional<int> order;  ///< of the B-splines; nothing for a spot noise
-  double support_area = 0;   ///< of the B-splines, pixels²
+  Texton texton;                            ///< kernels of a spot noise on Z², or coefficients of B-splines
+  std::optional<int> order = std::nullopt;  ///< of the B-splines; nothing for a spot noise
+  double support_area = 0;                  ///< of the B-splines, pixels²
 
   /// The coefficients as what methods/spot/spline_noise.h draws. `order` is set.
   SplineTexton spline_texton() const { return {texton, order.value(), support_area}; }

@@ -150,7 +150,7 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
 
   const Gaussian* gaussian() const override { return options_.kernel_at ? nullptr : this; }
   const Procedural* procedural() const override { return this; }
-  const Texton* texton() const override { return &texton_.coefficients; }
+  const SplineTexton* spline_texton() const override { return &texton_; }
   std::vector<double> mean() const override { return texton_.coefficients.mean; }
   CrossSpectrum spectrum(Extent grid) const override { return spline_spectrum(texton_, grid); }
 

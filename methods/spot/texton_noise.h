@@ -3,6 +3,10 @@
 //
 // Either one texton by the paper's alternating projections, or several of which each impact takes one, by direct
 // minimization of the relative model error (optimal_texton.h), at the same cost a pixel.
+//
+// The division by b̂^{1/2}, down to 0.009 in the corner of the spectrum at order 5, has no floor: on photographs and a
+// support of 30 x 30 the error of the noise stays within 0.005 of that of order 0 at all orders, and the corrected
+// colors exact to 1e-7; the coefficients alone grow (by 8 at order 5).
 #pragma once
 
 #include <vector>
@@ -21,7 +25,7 @@ struct TextonNoiseOptions {
   int order = 1;  ///< of the B-splines, 0 to max_bspline_order
   TextonFit fit = TextonFit::projections;
   SotStart start = SotStart::random_phase;                   ///< of the projections
-  ProjectionOptions projections;                             ///< its order is not read
+  ProjectionOptions projections{};                           ///< its order is not read
   OptimalTextonOptions direct{.kernels = 1};                 ///< its order is not read
   ColorCorrection color_correction = ColorCorrection::none;  ///< afterwards
 };

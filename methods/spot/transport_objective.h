@@ -48,7 +48,7 @@ class TransportObjective {
   std::vector<Image> images(std::span<const double> kernels) const;
 
  private:
-  /// ĥ_k.
+  /// α̂_k.
   std::vector<Spectrum> transform(std::span<const double> kernels) const;
 
   Spectrum target_;

@@ -141,6 +141,30 @@ TEST_F(FitTest, AGrayExemplarStoredAsRgbGivesAGrayTexton) {
   }
 }
 
+TEST_F(FitTest, SplinesReadBackMakeTheSamePicture) {
+  const std::vector<std::string> options{"ring", "-p",   "support=8", "-p", "order=1", "-p", "impacts=poisson",
+                                         "-p",   "mni=9"};
+  const auto with = [&](std::vector<std::string> start, const std::vector<std::string>& end) {
+    start.insert(start.end(), options.begin(), options.end());
+    start.insert(start.end(), end.begin(), end.end());
+    return start;
+  };
+  const Json fitted = run_json(with({"fit", "texton_noise"}, {"-o", "model"}));
+  EXPECT_EQ(fitted["files"], (Json{"model.json", "model.exr", "model.texton"}));
+  EXPECT_EQ(fitted["size"], (Json{8, 8}));
+  EXPECT_LT(fitted["rme"], 1);
+  EXPECT_EQ(picture("model.exr").extent(), (Extent{8, 8}));
+  run_json(with({"synth", "texton_noise"}, {"--size", "50x41", "-o", "direct.exr"}));
+  run_json({"synth", "--model", "model.json", "--size", "50x41", "-o", "read.exr"});
+  EXPECT_EQ(largest_difference(picture("direct.exr"), picture("read.exr")), 0);
+  run_json({"synth", "--model", "model.texton", "-p", "impacts=poisson", "-p", "mni=9", "--size", "50x41", "-o",
+            "text.exr"});
+  EXPECT_LT(largest_difference(picture("direct.exr"), picture("text.exr")), 1e-5);
+  const Outcome torus = run({"synth", "--model", "model.json", "--periodic", "-o", "torus.png"});
+  EXPECT_EQ(torus.status, 2);
+  EXPECT_THAT(torus.err, HasSubstr("torus"));
+}
+
 TEST_F(FitTest, WhatCannotBeFittedOrReadEndsWithStatus2) {
   write_image(Image({9, 8}, 1), file("black.png"));
   Image wide({300, 8}, 1);
@@ -152,7 +176,7 @@ TEST_F(FitTest, WhatCannotBeFittedOrReadEndsWithStatus2) {
   write_image(bad, file("nan.exr"));
   std::ofstream(file("cut.texton")) << "TEXTON\n1\n0\n0 0 0\n2 2\n1 1 1\n";
   std::ofstream(file("good.texton")) << "TEXTON\n1\n0\n0 0 0\n1 1\n1 1 1\nsource\n";
-  std::ofstream(file("linear.texton")) << "TEXTON\n1\n1\n0 0 0\n1 1\n0 0 0\nsource\n";
+  std::ofstream(file("frame.texton")) << "TEXTON\n1\n1\n0 0 0\n1 1\n0 0 0\nsource\n";
   std::ofstream(file("broken.json")) << "{\"format\": \"textonbench model\"";
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
       {{"fit", "rpn", "ring", "-o", "m"}, "rpn has no texton to write"},
@@ -163,7 +187,8 @@ TEST_F(FitTest, WhatCannotBeFittedOrReadEndsWithStatus2) {
       {{"synth", "--model", "none.json", "-o", "a.png"}, "none.json: no such file"},
       {{"synth", "--model", "cut.texton", "-o", "a.png"},
        "cut.texton:5: 2 x 2 coefficients announced and 6 bytes left"},
-      {{"synth", "--model", "linear.texton", "-o", "a.png"}, "order 1: expected order 0"},
+      {{"synth", "--model", "frame.texton", "-o", "a.png"}, "1x1 coefficients of order 1 are nothing but the frame"},
+      {{"fit", "texton_noise", "ring", "-p", "support=5", "-p", "kernels=2", "-o", "m"}, "fit = direct"},
       {{"synth", "--model", "broken.json", "-o", "a.png"}, "broken.json: expected a model"},
       {{"synth", "--model", "good.texton", "-p", "support=3", "-o", "a.png"}, "support"},
       {{"synth", "sot", "ring", "--model", "cut.texton", "-o", "a.png"}, "either METHOD EXEMPLAR or --model FILE"},

@@ -29,10 +29,11 @@ std::unique_ptr<Model> fit(const MethodEntry& entry, const Exemplar& exemplar) {
   return entry.analyze({exemplar, &exemplar}, small_params(entry), Seed{3});
 }
 
-/// Whether the method serves color: that of an exemplar on some domain.
+/// Whether the method serves color: that of an exemplar on a torus or on the plane.
 bool serves_color(const MethodEntry& entry) {
   const Exemplar color = test_exemplar({12, 10}, 3);
-  return !entry.refuses({color, &color}, small_params(entry), {.size = {12, 10}, .periodic = true});
+  return !entry.refuses({color, &color}, small_params(entry), {.size = {12, 10}, .periodic = true}) ||
+         !entry.refuses({color, &color}, small_params(entry), {.size = {12, 10}});
 }
 
 /// The numbers of channels that the method serves.

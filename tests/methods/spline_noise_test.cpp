@@ -40,13 +40,14 @@ std::vector<Point2> points_near(Point2 center, double spread, int count, std::ui
 }
 
 std::vector<float> evaluate(const Model& model, const std::vector<Point2>& points, std::uint64_t seed) {
-  std::vector<float> values(points.size() * static_cast<std::size_t>(model.texton()->channels()));
+  std::vector<float> values(points.size() * static_cast<std::size_t>(model.spline_texton()->coefficients.channels()));
   model.procedural()->evaluate(points, Seed{seed}, values);
   return values;
 }
 
 std::vector<float> gradient(const Model& model, const std::vector<Point2>& points, std::uint64_t seed) {
-  std::vector<float> values(2 * points.size() * static_cast<std::size_t>(model.texton()->channels()));
+  std::vector<float> values(2 * points.size() *
+                            static_cast<std::size_t>(model.spline_texton()->coefficients.channels()));
   model.procedural()->gradient(points, Seed{seed}, values);
   return values;
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "experiments/metrics/model_error.h"
 #include "methods/method.h"
 #include "tests/texture.h"
 
@@ -87,6 +88,31 @@ TEST_F(TextonQuality, PatchesOfTheGaussianLimitScoreTheFloorWhateverTheTexton) {
     EXPECT_GT(of(domain, "poisson", 1), 2 * limit);
   }
   EXPECT_EQ(metric.of_limit(*fit("adsn", {}), domain_, Seed{1}), nullptr);
+}
+
+TEST_F(TextonQuality, OfSplinesIsThatOfTheirNoise) {
+  const std::map<std::string, ParamValue> support{{"support", std::int64_t{9}}};
+  const auto sot = fit("sot", support);
+  for (const int order : {0, 1, 3}) {
+    std::map<std::string, ParamValue> given = support;
+    given["order"] = std::int64_t{order};
+    const auto model = fit("texton_noise", given);
+    const double error = relative_model_error(model->gaussian()->spectrum({26, 22}), target_.gaussian.spectrum);
+    EXPECT_NEAR(*rme(*model, target_, domain_), error, 1e-12);
+    const double variance = *kept_variance(*model, target_, domain_);
+    EXPECT_LT(variance, 1);
+    EXPECT_NEAR(variance, *kept_variance(*sot, target_, domain_), 0.1) << order;
+    EXPECT_GE(*rme_corrected(*model, target_, domain_), error - 1e-6);
+    EXPECT_GT(*kernel_kurtosis(*model, target_, domain_), 1);
+    EXPECT_NEAR(*poisson_impacts(*model, target_, domain_), *kernel_kurtosis(*model, target_, domain_) / 0.1, 1e-9);
+    EXPECT_FALSE(stratified_impacts(*model, target_, domain_));
+    EXPECT_EQ(rme_bound(*model, target_, domain_).has_value(), order == 0);
+    if (order == 0) {
+      EXPECT_EQ(variance, *kept_variance(*sot, target_, domain_));
+      EXPECT_EQ(*rme_corrected(*model, target_, domain_), *rme_corrected(*sot, target_, domain_));
+      EXPECT_NEAR(*kernel_kurtosis(*model, target_, domain_), *kernel_kurtosis(*sot, target_, domain_), 1e-9);
+    }
+  }
 }
 
 TEST_F(TextonQuality, AModelWithoutATextonHasNone) {
