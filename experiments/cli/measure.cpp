@@ -20,16 +20,17 @@ struct MeasureOptions {
   bool json = false;
 };
 
-RunSpec make_spec(const MeasureOptions& options, const ExemplarInfo& exemplar) {
+RunSpec make_spec(const MeasureOptions& options, const ExemplarInfo& exemplar, const ExemplarCatalog& catalog) {
   const MethodEntry& method = find_method(options.model.method);
   RunSpec spec;
   spec.method = options.model.method;
   spec.params = options.model.read_params(method).values();
-  spec.file_sha256 = hash_files(method, spec.params);
+  spec.file_sha256 = hash_named(method, spec.params, catalog);
   spec.exemplar = options.model.exemplar;
   spec.exemplar_sha256 = exemplar_sha256(exemplar);
   spec.size = options.model.read_size();
   spec.periodic = options.model.is_periodic();
+  spec.step = options.model.step;
   spec.seed = options.model.seed;
   spec.samples = options.samples;
   spec.metrics = options.metrics;
@@ -64,8 +65,8 @@ int measure(const MeasureOptions& options, const GlobalOptions& globals) {
   const tbb::global_control threads = limit_threads(globals);
   const ExemplarCatalog catalog(home_folder());
   const ExemplarInfo exemplar = find_exemplar(catalog, options.model.exemplar);
-  const RunSpec spec = make_spec(options, exemplar);
-  const Record record = execute(spec, exemplar, nullptr);
+  const RunSpec spec = make_spec(options, exemplar, catalog);
+  const Record record = execute(spec, catalog, nullptr);
   if (record["status"] == "refused") {
     throw std::invalid_argument(fmt::format("{} cannot do this: {}", spec.method, record["reason"].get<std::string>()));
   }

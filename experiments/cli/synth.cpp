@@ -47,8 +47,11 @@ Fitted fit_to_exemplar(const ModelOptions& asked, bool quiet) {
   }
   require_usable(exemplar);
   const Domain domain{.size = asked_size.area() > 0 ? asked_size : exemplar.pixels.extent(),
+                      .step = asked.step,
                       .periodic = asked.is_periodic()};
-  const Problem problem{exemplar};
+  std::optional<Exemplar> second;
+  if (const auto named = second_exemplar(method, params.values(), catalog)) second = load_exemplar(*named);
+  const Problem problem{exemplar, second ? &*second : nullptr};
   if (const std::optional<std::string> reason = method.refuses(problem, params, domain)) {
     throw std::invalid_argument(fmt::format("{} cannot do this: {}", asked.method, *reason));
   }
@@ -75,7 +78,8 @@ Fitted read_fitted(const SynthOptions& options) {
   const bool is_text = options.model_file.extension() == ".texton";
   const ModelFile file = is_text ? read_texton_as_model(options.model_file) : read_model_file(options.model_file);
   const Extent asked_size = asked.read_size();
-  const Domain domain{.size = asked_size.area() > 0 ? asked_size : Extent{512, 512}, .periodic = asked.periodic};
+  const Domain domain{
+      .size = asked_size.area() > 0 ? asked_size : Extent{512, 512}, .step = asked.step, .periodic = asked.periodic};
   if (const std::optional<std::string> reason =
           file.order ? refuse_spline_noise(domain) : refuse_spot_noise(file.texton.extent(), domain)) {
     throw std::invalid_argument(fmt::format("{} cannot do this: {}", options.model_file.string(), *reason));
@@ -134,7 +138,8 @@ int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
                 {"seconds", {{"analyze", analyze_seconds}, {"synthesize", synthesize_seconds}}},
                 {"seed", asked.seed},
                 {"size", {domain.size.width, domain.size.height}},
-                {"periodic", domain.periodic}});
+                {"periodic", domain.periodic},
+                {"step", domain.step}});
     return 0;
   }
   fmt::print("{}: {}x{} {}, seed {} (analysis {:.1f} ms, synthesis {:.1f} ms)\n", options.output.string(),

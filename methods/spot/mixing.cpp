@@ -130,9 +130,11 @@ class Mixture final : public Model {
   std::vector<double> first_, second_;
 };
 
+constexpr std::string_view second_missing = "mixing needs two textures: -p second=EXEMPLAR names the other one";
+
 std::optional<std::string> refuse_mixing(const Problem& problem, const Params& params, const Domain& domain) {
   if (problem.second == nullptr) {
-    return "mixing needs two textures: -p second=EXEMPLAR names the other one";
+    return std::string(second_missing);
   }
   const Extent a = problem.exemplar.pixels.extent();
   const Extent b = problem.second->pixels.extent();
@@ -148,6 +150,9 @@ std::optional<std::string> refuse_mixing(const Problem& problem, const Params& p
 }
 
 std::unique_ptr<Model> fit_mixing(const Problem& problem, const Params& params, Seed seed) {
+  if (problem.second == nullptr) {
+    throw std::invalid_argument(std::string(second_missing));
+  }
   require_usable(problem.exemplar);
   require_usable(*problem.second);
   const SotOptions fit = fit_options(params);

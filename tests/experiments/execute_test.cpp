@@ -25,7 +25,7 @@ class ExecuteTest : public testing::Test {
     spec.samples = 2;
     return spec;
   }
-  Record execute_here(const RunSpec& spec) const { return execute(spec, exemplars_.find(spec.exemplar), &results_); }
+  Record execute_here(const RunSpec& spec) const { return execute(spec, exemplars_, &results_); }
 
   TemporaryFolder folder_;
   ResultsFolder results_{folder_.path()};
