@@ -212,7 +212,8 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
   }
 
   Image sum_by_point(const Domain& domain, std::uint64_t key) const {
-    const auto [width, height] = domain.size;
+    const int width = domain.size.width;
+    const int height = domain.size.height;
     const int side = static_cast<int>(std::clamp(neighborhood / domain.step, 1.0, 32.0));
     const int columns = (width + side - 1) / side;
     Image out = Image::uninitialized(domain.size, channels());
@@ -257,8 +258,11 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
     if (domain.step != 1) {
       return SplineRoute::points;
     }
-    return std::ranges::min({SplineRoute::impacts, SplineRoute::convolution, SplineRoute::points}, {},
-                            [&](SplineRoute taken) { return cost(taken, domain).nanoseconds; });
+    SplineRoute best = SplineRoute::impacts;
+    for (const SplineRoute other : {SplineRoute::convolution, SplineRoute::points}) {
+      best = cost(other, domain).nanoseconds < cost(best, domain).nanoseconds ? other : best;
+    }
+    return best;
   }
 
   SplineTexton texton_;

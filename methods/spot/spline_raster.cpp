@@ -223,7 +223,8 @@ Image sum_by_impact(const SplineTexton& texton, std::span<const Image> framed, c
 
 Image sum_by_convolution(const SplineTexton& texton, double scale, const RasterImpacts& impacts,
                          std::span<const double> mean) {
-  const auto [width, height] = texton.coefficients.extent();
+  const int width = texton.coefficients.extent().width;
+  const int height = texton.coefficients.extent().height;
   const std::size_t kernels = texton.coefficients.kernels.size();
   // Pixel z of a field is Σ_i w_i β(z − (width, height) + 1 − x_i): kernels reach a pixel from up to their extent away.
   const Extent size{impacts.size.width + width - 1, impacts.size.height + height - 1};
