@@ -26,7 +26,7 @@ SplineCost cost_by_point(const SplineTexton& texton, double intensity) {
 }
 
 SplineCost cost_by_impact(const SplineTexton& texton, double intensity, const Domain& domain) {
-  constexpr double line = 16;
+  constexpr double line_floats = 16;
   constexpr double impact_nanoseconds = 50;
   constexpr double line_nanoseconds = 1.45;
   constexpr double order_nanoseconds = 0.93;
@@ -34,8 +34,8 @@ SplineCost cost_by_impact(const SplineTexton& texton, double intensity, const Do
   const int channels = texton.coefficients.channels();
   // Columns of impacts that reach the domain, over its own.
   const double reached = 1 + (width - 1.0) / domain.size.width;
-  // A row of a kernel meets (width + line − 1) / line lines on average over its places.
-  const double lines = channels * height * (width + line - 1) / line;
+  // A row of a kernel meets (width + 15) / 16 lines on average over its places.
+  const double lines = channels * height * (width + line_floats - 1) / line_floats;
   return {intensity * width * height * channels * (4.0 * texton.order + 3),
           intensity * reached * (impact_nanoseconds + lines * (line_nanoseconds + order_nanoseconds * texton.order))};
 }

@@ -145,7 +145,7 @@ template <int order>
 /// add_line in each of `lines` lines.
 template <int order>
 [[gnu::always_inline]] inline void add_lines(LineRows rows, std::int64_t lines, const float* wx, const float* wy) {
-  for (std::int64_t line = 0; line < lines; ++line) {
+  for (std::int64_t i = 0; i < lines; ++i) {
     add_line<order>(rows, wx, wy);
     rows.from += raster_line;
     rows.to += raster_line;
