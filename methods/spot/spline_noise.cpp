@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "methods/base/bspline.h"
-#include "methods/base/convolution.h"
 #include "methods/base/parallel.h"
+#include "methods/spot/spline_cost.h"
 #include "methods/spot/spline_place.h"
 #include "methods/spot/spline_points.h"
 #include "methods/spot/spline_raster.h"
@@ -159,20 +159,10 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
     for (const Image& kernel : texton_.coefficients.kernels) {
       bytes += kernel.bytes();
     }
-    const SplineRoute taken = route(domain);
-    const Cost cost = taken == SplineRoute::points    ? cost_of_points()
-                      : taken == SplineRoute::impacts ? cost_of_impacts(domain)
-                                                      : cost_of_convolution(domain);
-    return {bytes, cost.operations};
+    return {bytes, cost(route(domain), domain).operations};
   }
 
  private:
-  /// Of a pixel.
-  struct Cost {
-    double operations = 0;
-    double nanoseconds = 0;
-  };
-
   int channels() const { return texton_.coefficients.channels(); }
   static std::uint64_t key_of(Seed seed) { return Stream(seed).child("texton noise").key(); }
 
@@ -236,7 +226,8 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
   }
 
   Image sum_by_point(const Domain& domain, std::uint64_t key) const {
-    const auto [width, height] = domain.size;
+    const int width = domain.size.width;
+    const int height = domain.size.height;
     const int side = static_cast<int>(std::clamp(neighborhood / domain.step, 1.0, 32.0));
     const int columns = (width + side - 1) / side;
     Image out = Image::uninitialized(domain.size, channels());
@@ -268,32 +259,10 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
     return out;
   }
 
-  // Nanoseconds are those of benchmarks/texton_noise_bench on one thread (textons of 16² to 256², orders 0 to 5); only
-  // their ratios matter.
-
-  Cost cost_of_points() const {
-    const double hits = grid_.intensity() * static_cast<double>(reach(texton_).area());
-    const double taps = (texton_.order + 1.0) * (texton_.order + 1.0);
-    return {hits * 2 * (taps + texton_.order + 2) * channels(), hits * (2 + 0.3 * taps * points_.lanes() / 4)};
-  }
-
-  Cost cost_of_impacts(const Domain& domain) const {
-    const auto [width, height] = reach(texton_);
-    // Impacts whose kernels meet the domain, over its pixels; and lines that a row of a kernel meets over its places.
-    const double met = grid_.intensity() * (1 + (width - 1.0) / domain.size.width);
-    const double operations = 4.0 * texton_.order + 4;
-    return {grid_.intensity() * static_cast<double>(reach(texton_).area()) * channels() * operations,
-            met * channels() * height * (1 + (width + 15.0) / 16 * (0.4 + 0.11 * operations))};
-  }
-
-  Cost cost_of_convolution(const Domain& domain) const {
-    const auto pixels = static_cast<double>(convolution_grid(texton_.coefficients.extent(), domain.size).area());
-    const auto kernels = static_cast<double>(texton_.coefficients.kernels.size());
-    const double transforms = kernels * (1 + channels()) + channels();
-    const double operations = (transforms * 2.5 * std::log2(pixels) + 8 * kernels * channels()) * pixels /
-                              static_cast<double>(domain.size.area());
-    const double splat = grid_.intensity() * (texton_.order + 1) * (texton_.order + 1);
-    return {operations + 2 * splat, 0.14 * operations + 2 * splat};
+  SplineCost cost(SplineRoute taken, const Domain& domain) const {
+    return taken == SplineRoute::points    ? cost_by_point(texton_, grid_.intensity())
+           : taken == SplineRoute::impacts ? cost_by_impact(texton_, grid_.intensity(), domain)
+                                           : cost_by_convolution(texton_, grid_.intensity(), domain);
   }
 
   SplineRoute route(const Domain& domain) const {
@@ -303,12 +272,11 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
     if (domain.step != 1) {
       return SplineRoute::points;
     }
-    const double points = cost_of_points().nanoseconds;
-    const double impacts = cost_of_impacts(domain).nanoseconds;
-    const double convolution = cost_of_convolution(domain).nanoseconds;
-    return points < std::min(impacts, convolution) ? SplineRoute::points
-           : impacts <= convolution                ? SplineRoute::impacts
-                                                   : SplineRoute::convolution;
+    SplineRoute best = SplineRoute::impacts;
+    for (const SplineRoute other : {SplineRoute::convolution, SplineRoute::points}) {
+      best = cost(other, domain).nanoseconds < cost(best, domain).nanoseconds ? other : best;
+    }
+    return best;
   }
 
   SplineTexton texton_;

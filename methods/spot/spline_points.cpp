@@ -81,10 +81,10 @@ template <int order, int lanes, Derivative derivative>
 
 /// sums[i] += weight Σ_j wy_j Σ_k wx_k (tap k of row j) at each point i in reach.
 template <int order, int lanes>
-[[gnu::always_inline]] inline void add_taps(const float* data, std::int32_t row_stride, const PointTaps& taps,
+[[gnu::always_inline]] inline void add_taps(const float* data, std::ptrdiff_t row_stride, const PointTaps& taps,
                                             int count, float weight, float* sums) {
   using Tap = typename TapVector<lanes>::Type;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < count; ++i, sums += lanes) {
     if (taps.first[i] < 0) {
       continue;
     }
@@ -100,7 +100,7 @@ template <int order, int lanes>
       }
       value = j == 0 ? taps.wy[0][i] * blend : value + taps.wy[j][i] * blend;
     }
-    *reinterpret_cast<Tap*>(sums + i * lanes) += weight * value;
+    *reinterpret_cast<Tap*>(sums) += weight * value;
   }
 }
 
@@ -178,7 +178,7 @@ SplinePoints::SplinePoints(const SplineTexton& texton, double scale)
   for (const Image& kernel : texton.coefficients.kernels) {
     for (int c = 0; c < kernel.channels(); ++c) {
       for (int y = 0; y < height; ++y) {
-        float* to = kernel_start + (y + frame) * row_stride_ + frame * lanes_ + c;
+        float* to = kernel_start + (y + frame) * row_stride_ + std::int64_t{frame} * lanes_ + c;
         for (const float v : kernel.row(c, y)) {
           *to = static_cast<float>(scale * v);
           to += lanes_;

@@ -145,7 +145,7 @@ template <int order>
 /// add_line in each of `lines` lines.
 template <int order>
 [[gnu::always_inline]] inline void add_lines(LineRows rows, std::int64_t lines, const float* wx, const float* wy) {
-  for (std::int64_t line = 0; line < lines; ++line) {
+  for (std::int64_t i = 0; i < lines; ++i) {
     add_line<order>(rows, wx, wy);
     rows.from += raster_line;
     rows.to += raster_line;
@@ -223,7 +223,8 @@ Image sum_by_impact(const SplineTexton& texton, std::span<const Image> framed, c
 
 Image sum_by_convolution(const SplineTexton& texton, double scale, const RasterImpacts& impacts,
                          std::span<const double> mean) {
-  const auto [width, height] = texton.coefficients.extent();
+  const int width = texton.coefficients.extent().width;
+  const int height = texton.coefficients.extent().height;
   const std::size_t kernels = texton.coefficients.kernels.size();
   // Pixel z of a field is Σ_i w_i β(z − (width, height) + 1 − x_i): kernels reach a pixel from up to their extent away.
   const Extent size{impacts.size.width + width - 1, impacts.size.height + height - 1};
