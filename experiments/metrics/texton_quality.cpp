@@ -12,7 +12,8 @@ namespace {
 
 constexpr double small_kurtosis = 0.1;
 
-/// 1 where a kernel is not zero.
+}  // namespace
+
 Image support_mask(const Texton& texton) {
   Image mask(texton.extent(), 1);
   for (const Image& kernel : texton.kernels) {
@@ -28,8 +29,6 @@ Image support_mask(const Texton& texton) {
   }
   return mask;
 }
-
-}  // namespace
 
 std::optional<double> kept_variance(const Model& model, const Target& target, const Domain&) {
   if (model.texton() == nullptr) return std::nullopt;
