@@ -184,6 +184,7 @@ std::optional<double> campbell_deviation(const Model& model, const Target& targe
     const double intensity = intensity_of(*texton, mni);
     const std::vector<double> mean = mean_of_noise(kernel, intensity);
     std::vector<double> sd;
+    sd.reserve(mean.size());
     for (int c = 0; c < kernel.channels(); ++c) sd.push_back(std::sqrt(intensity * power_sum(kernel, c, 2)));
     const Stream stream = points(target, "campbell_deviation").child(static_cast<std::uint64_t>(mni));
     append(replicates, replicate_noise(kernel, intensity, stream, {1, 1}, values,
