@@ -39,9 +39,8 @@ double largest_deviation(const Replicates& replicates, std::span<const double> e
   for (std::size_t j = 0; j < expected.size(); ++j) {
     if (sum[j] == 0) continue;
     const double variance = std::max(0.0, squares[j] - sum[j] * sum[j] / count) / (count - 1);
-    const double error = std::sqrt(variance / count);
-    largest =
-        std::max(largest, error > 0 ? std::fabs(sum[j] / count) / error : std::numeric_limits<double>::infinity());
+    if (variance == 0) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, std::fabs(sum[j] / count) / std::sqrt(variance / count));
   }
   return largest / standard_error_limit(expected.size(), static_cast<int>(replicates.size()));
 }

@@ -55,11 +55,9 @@ std::vector<float> lag_products(const Image& u, int reach) {
 double autocorrelation(const Image& kernel, int channel, int x, int y) {
   double sum = 0;
   for (int row = std::max(0, -y); row < std::min(kernel.height(), kernel.height() - y); ++row) {
-    const auto here = kernel.row(channel, row);
-    const auto there = kernel.row(channel, row + y);
     for (int column = std::max(0, -x); column < std::min(kernel.width(), kernel.width() - x); ++column) {
-      sum += static_cast<double>(here[static_cast<std::size_t>(column)]) *
-             static_cast<double>(there[static_cast<std::size_t>(column + x)]);
+      sum += static_cast<double>(kernel.at(channel, column, row)) *
+             static_cast<double>(kernel.at(channel, column + x, row + y));
     }
   }
   return sum;
