@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <unordered_map>
@@ -69,8 +70,8 @@ void check_selection(const ClaimSelection& selection, const Plan& plan) {
     if (!known) {
       throw ConfigError(
           selection.places.at(key),
-          fmt::format("unknown selector \"{}\": expected run, metric, part, exemplar, seed or a parameter "
-                      "of the method",
+          fmt::format("unknown selector \"{}\": expected run, metric, part, over_seeds, exemplar, seed or a "
+                      "parameter of the method",
                       key));
     }
   }
@@ -120,6 +121,30 @@ double number_of(const Record& record, const ClaimSelection& selection) {
   return number.get<double>();
 }
 
+/// One number an exemplar, as of seed 0.
+PairedValues take_over_seeds(const PairedValues& values, OverSeeds over_seeds) {
+  if (over_seeds == OverSeeds::each) return values;
+  std::map<std::string, std::vector<double>> by_exemplar;
+  for (const auto& [key, value] : values) by_exemplar[key.first].push_back(value);
+  PairedValues result;
+  for (const auto& [exemplar, numbers] : by_exemplar) {
+    const auto count = static_cast<double>(numbers.size());
+    const double mean = std::accumulate(numbers.begin(), numbers.end(), 0.0) / count;
+    double& number = result[{exemplar, 0}];
+    if (over_seeds == OverSeeds::mean) {
+      number = mean;
+    } else if (over_seeds == OverSeeds::least) {
+      number = std::ranges::min(numbers);
+    } else {
+      if (numbers.size() < 2) throw CannotJudge(fmt::format("a single seed on {} has no deviation", exemplar));
+      double squares = 0;
+      for (const double value : numbers) squares += (value - mean) * (value - mean);
+      number = std::sqrt(squares / (count - 1));
+    }
+  }
+  return result;
+}
+
 PairedValues values_of(const ClaimSelection& selection, const Plan& plan, const RecordsById& records,
                        std::vector<std::string>& ids) {
   const std::vector<const PlannedRun*> runs = chosen_runs(plan, selection);
@@ -154,7 +179,7 @@ PairedValues values_of(const ClaimSelection& selection, const Plan& plan, const 
     for (const double value : repeated) sum += value;
     means[key] = sum / static_cast<double>(repeated.size());
   }
-  return means;
+  return take_over_seeds(means, selection.over_seeds);
 }
 
 /// measure − against, or the logarithm of their ratio, where both have a value.

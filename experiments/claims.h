@@ -30,11 +30,16 @@ std::string_view verdict_name(ClaimVerdict verdict);
 /// Throws std::invalid_argument for another text, with the nearest verdict.
 ClaimVerdict verdict_of(std::string_view name);
 
+/// What the seeds of an exemplar come to, when a claim is about them together: their mean, their standard deviation or
+/// their least number.
+enum class OverSeeds { each, mean, deviation, least };
+
 /// Numbers of the runs of one [[runs]] table: {run = "rpn", metric = "rme", exemplar = "ring", phase = "added"}.
 struct ClaimSelection {
   SourcePlace place;
   std::string run, metric;
   bool floor = false;                            ///< part = "floor": the metric's floor instead of its value
+  OverSeeds over_seeds = OverSeeds::each;        ///< over_seeds = "mean", "deviation" or "least"
   std::map<std::string, ParamValue> conditions;  ///< on exemplar, seed, or a parameter of the method
   std::map<std::string, SourcePlace> places;
 };
@@ -51,7 +56,8 @@ struct ClaimTest {
   std::string config;  ///< "lectures2022/claims"
   SourcePlace config_place;
   ClaimSelection measure;
-  /// Measured beside it and combined pairwise, on the same exemplar and seed: measure − against, or measure / against.
+  /// Measured beside it and combined pairwise, on the same exemplar and seed, or on the same exemplar where both are
+  /// taken over seeds: measure − against, or measure / against.
   std::optional<ClaimSelection> against;
   CombinePair combine = CombinePair::difference;
   ExpectedRange expect;

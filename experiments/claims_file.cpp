@@ -74,8 +74,16 @@ ClaimSelection read_selection(const TomlEntry& entry) {
     constexpr std::array<std::string_view, 2> parts{"value", "floor"};
     selection.floor = read_choice(part->value, "part", parts) == "floor";
   }
+  if (const TomlEntry* over_seeds = reader.find("over_seeds")) {
+    constexpr std::array<std::string_view, 3> ways{"mean", "deviation", "least"};
+    const std::string way = read_choice(over_seeds->value, "over_seeds", ways);
+    selection.over_seeds = way == "mean"        ? OverSeeds::mean
+                           : way == "deviation" ? OverSeeds::deviation
+                                                : OverSeeds::least;
+  }
   for (const TomlEntry& condition : std::get<TomlTable>(value.data).entries) {
-    const bool own = condition.key == "run" || condition.key == "metric" || condition.key == "part";
+    constexpr std::array<std::string_view, 4> own_keys{"run", "metric", "part", "over_seeds"};
+    const bool own = std::ranges::find(own_keys, condition.key) != own_keys.end();
     selection.places.emplace(condition.key, own ? condition.value.place : condition.place);
     if (!own) selection.conditions.emplace(condition.key, read_scalar(condition.value, condition.key));
   }
@@ -93,6 +101,9 @@ ClaimTest read_test(TableReader& reader, const TomlEntry& config) {
     constexpr std::array<std::string_view, 2> ways{"difference", "ratio"};
     const std::string way = read_choice(reader.require("combine").value, "combine", ways);
     test.combine = way == "ratio" ? CombinePair::ratio : CombinePair::difference;
+    if ((test.measure.over_seeds == OverSeeds::each) != (test.against->over_seeds == OverSeeds::each)) {
+      throw ConfigError(against->place, "against: expected over_seeds in both of measure and against, or in neither");
+    }
   } else if (combine != nullptr) {
     throw ConfigError(combine->place, "combine: there is nothing to combine with; expected the key \"against\" too");
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "experiments/files.h"
@@ -33,7 +34,10 @@ std::string expected_in_words(const ExpectedRange& range) {
 /// "rme of rpn / rme of adsn".
 std::string measure_in_words(const ClaimTest& test) {
   const auto part = [](const ClaimSelection& s) {
-    std::string text = fmt::format("{}{} of {}", s.floor ? "floor of " : "", s.metric, s.run);
+    constexpr std::array<std::string_view, 4> over_seeds{"", "mean over seeds of ", "deviation over seeds of ",
+                                                         "least over seeds of "};
+    std::string text = fmt::format("{}{}{} of {}", over_seeds.at(static_cast<std::size_t>(s.over_seeds)),
+                                   s.floor ? "floor of " : "", s.metric, s.run);
     for (const auto& [key, value] : s.conditions) text += fmt::format(", {} = {}", key, to_string(value));
     return text;
   };

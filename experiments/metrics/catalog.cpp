@@ -13,13 +13,14 @@
 #include "experiments/metrics/moments.h"
 #include "experiments/metrics/patch_distance.h"
 #include "experiments/metrics/spectral_distance.h"
+#include "experiments/metrics/spot_identity_catalog.h"
 #include "experiments/metrics/texton_quality.h"
 #include "experiments/metrics/transport_identities.h"
 
 namespace textonbench {
 namespace {
 
-constexpr std::array catalog{
+constexpr std::array general_metrics{
     MetricEntry{.name = "rme",
                 .title = "Relative model error",
                 .unit = "1",
@@ -341,12 +342,20 @@ constexpr std::array catalog{
 
 }  // namespace
 
-std::span<const MetricEntry> metric_catalog() { return catalog; }
+std::span<const MetricEntry> metric_catalog() {
+  static const std::vector<MetricEntry> catalog = [] {
+    std::vector<MetricEntry> entries(general_metrics.begin(), general_metrics.end());
+    const std::span<const MetricEntry> spot = spot_identity_metrics();
+    entries.insert(entries.end(), spot.begin(), spot.end());
+    return entries;
+  }();
+  return catalog;
+}
 
 const MetricEntry& find_metric(std::string_view name) {
   std::vector<std::string_view> names;
-  names.reserve(catalog.size());
-  for (const MetricEntry& entry : catalog) {
+  names.reserve(metric_catalog().size());
+  for (const MetricEntry& entry : metric_catalog()) {
     if (entry.name == name) return entry;
     names.push_back(entry.name);
   }

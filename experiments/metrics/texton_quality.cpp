@@ -14,23 +14,6 @@ namespace {
 
 constexpr double small_kurtosis = 0.1;
 
-/// 1 where a kernel is not zero.
-Image support_mask(const Texton& texton) {
-  Image mask(texton.extent(), 1);
-  for (const Image& kernel : texton.kernels) {
-    for (int c = 0; c < kernel.channels(); ++c) {
-      for (int y = 0; y < kernel.height(); ++y) {
-        const auto values = kernel.row(c, y);
-        const auto inside = mask.row(0, y);
-        for (std::size_t x = 0; x < values.size(); ++x) {
-          if (values[x] != 0) inside[x] = 1;
-        }
-      }
-    }
-  }
-  return mask;
-}
-
 /// What a model sums: kernels on Z², or the coefficients of B-splines.
 struct SummedTexton {
   const Texton* texton = nullptr;  ///< nothing when it sums neither
@@ -58,6 +41,22 @@ std::optional<KurtosisRange> local_kurtosis(const Model& model, const Domain& do
 }
 
 }  // namespace
+
+Image support_mask(const Texton& texton) {
+  Image mask(texton.extent(), 1);
+  for (const Image& kernel : texton.kernels) {
+    for (int c = 0; c < kernel.channels(); ++c) {
+      for (int y = 0; y < kernel.height(); ++y) {
+        const auto values = kernel.row(c, y);
+        const auto inside = mask.row(0, y);
+        for (std::size_t x = 0; x < values.size(); ++x) {
+          if (values[x] != 0) inside[x] = 1;
+        }
+      }
+    }
+  }
+  return mask;
+}
 
 std::optional<double> kept_variance(const Model& model, const Target& target, const Domain&) {
   const SummedTexton summed = summed_texton(model);

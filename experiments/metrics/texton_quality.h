@@ -9,6 +9,9 @@
 
 namespace textonbench {
 
+/// 1 where a kernel is not zero in some channel, else 0.
+Image support_mask(const Texton& texton);
+
 /// Variance of the model over that of the target, all channels together. At the alternating projections' fixed points
 /// 1 − RME².
 std::optional<double> kept_variance(const Model& model, const Target& target, const Domain& domain);

@@ -63,6 +63,21 @@ TEST_F(ClaimsFileTest, ReadsEveryKey) {
   EXPECT_EQ(claim.test->expect.high, 1);
 }
 
+TEST_F(ClaimsFileTest, SeedsAreTakenTogetherOnBothSidesOrNeither) {
+  const std::string measure = "config = \"c\"\nmeasure = {run = \"a\", metric = \"rme\", over_seeds = \"least\"}\n";
+  const std::string against = "combine = \"ratio\"\nagainst = {run = \"b\", metric = \"rme\"";
+  const std::string expect = "expect = {above = 1}\n";
+  const std::vector<std::filesystem::path> files{
+      write(head_ + measure + against + ", over_seeds = \"mean\"}\n" + expect)};
+  const std::vector<Claim> claims = read_claims(files);
+  EXPECT_EQ(claims.front().test->measure.over_seeds, OverSeeds::least);
+  EXPECT_EQ(claims.front().test->against->over_seeds, OverSeeds::mean);
+  EXPECT_TRUE(claims.front().test->measure.conditions.empty());
+  EXPECT_THAT(error_of(measure + against + "}\n" + expect), HasSubstr("over_seeds in both"));
+  EXPECT_THAT(error_of("config = \"c\"\nmeasure = {run = \"a\", metric = \"rme\", over_seeds = \"most\"}\n" + expect),
+              HasSubstr("expected one of mean, deviation, least; found \"most\""));
+}
+
 TEST_F(ClaimsFileTest, BadInputIsToldWithItsPlace) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"needs = [\"gpu\"]\ncaveats = \"x\"\n",

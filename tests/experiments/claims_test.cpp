@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "experiments/ledger.h"
@@ -110,6 +111,27 @@ TEST_F(ClaimsTest, ConditionsChooseRuns) {
   claim_.test->measure.conditions = {{"exemplar", std::string("ring")}, {"phase", std::string("added")}};
   EXPECT_EQ(outcome().records.size(), 2U);
   EXPECT_NEAR(outcome().measured->value, 0.5 * 0.85, 1e-12);
+}
+
+TEST_F(ClaimsTest, SeedsOfAnExemplarAreTakenTogether) {
+  // On each exemplar the two seeds have the numbers 1 and 3: mean 2, deviation √2, least 1.
+  record_all(1, 1, 0);
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    records_[i]["metrics"]["rme"]["value"] = i % 2 == 0 ? 1.0 : 3.0;
+  }
+  claim_.test->measure.over_seeds = OverSeeds::deviation;
+  EXPECT_NEAR(outcome().measured->value, std::sqrt(2.0), 1e-12);
+  claim_.test->measure.over_seeds = OverSeeds::least;
+  EXPECT_NEAR(outcome().measured->value, 1, 1e-12);
+  claim_.test->against = selection("b");
+  claim_.test->against->over_seeds = OverSeeds::mean;
+  claim_.test->combine = CombinePair::ratio;
+  EXPECT_NEAR(outcome().measured->value, 0.5, 1e-12);
+  EXPECT_EQ(outcome().records.size(), 16U);
+  claim_.test->against.reset();
+  claim_.test->measure.over_seeds = OverSeeds::deviation;
+  claim_.test->measure.conditions = {{"seed", std::int64_t{1}}};
+  EXPECT_THAT(outcome().reason, HasSubstr("a single seed on grass has no deviation"));
 }
 
 TEST_F(ClaimsTest, WhatIsNotThereIsToldAsTheReason) {
