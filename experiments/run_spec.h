@@ -18,8 +18,8 @@ namespace textonbench {
 /// A model of one exemplar and what is measured on it. `samples` samples are drawn, with seeds derived from `seed`.
 struct RunSpec {
   std::string method;
-  std::map<std::string, ParamValue> params;        ///< complete: defaults included
-  std::map<std::string, std::string> file_sha256;  ///< of what an option names, by option (see hash_named)
+  std::map<std::string, ParamValue> params;             ///< complete: defaults included
+  std::map<std::string, std::string> file_sha256 = {};  ///< of what an option names, by option (see hash_named)
   std::string exemplar;
   std::string exemplar_sha256;
   Extent size;  ///< of the samples; 0x0 means the exemplar's own size
