@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "experiments/files.h"
@@ -35,7 +36,8 @@ constexpr std::array known_columns{
 constexpr const char* bound_metric = "rme_bound";
 constexpr const char* patch_metric = "limit_patch_distance";
 
-bool counts_impacts(std::string_view column) { return column.ends_with("_impacts"); }
+/// Whether exemplars differ by factors, so that their mean is geometric.
+bool has_geometric_mean(std::string_view column) { return column.ends_with("_impacts") || column == "kernel_kurtosis"; }
 
 bool measures(const SelectedRun& run, std::string_view metric) {
   return std::ranges::find(run.spec().metrics, metric) != run.spec().metrics.end();
@@ -114,11 +116,12 @@ TextonLine exemplar_line(const FigureInput& input, const RunGroup& group, const 
   return line;
 }
 
-/// Mean over exemplars, of logarithms where impacts are counted.
+/// Mean over exemplars, with the least and greatest of them.
 TextonCell mean_cell(const std::vector<TextonLine>& lines, std::size_t column) {
-  const bool geometric = counts_impacts(known_columns.at(column).name);
+  const bool geometric = has_geometric_mean(known_columns.at(column).name);
   TextonCell mean;
-  Levels levels;
+  double sum = 0, least = std::numeric_limits<double>::infinity(), greatest = -least;
+  std::size_t count = 0;
   for (const TextonLine& line : lines) {
     const TextonCell& cell = line.cells[column];
     mean.below += cell.below;
@@ -127,12 +130,16 @@ TextonCell mean_cell(const std::vector<TextonLine>& lines, std::size_t column) {
       mean.fewest = mean.most > 0 ? std::min(mean.fewest, cell.fewest) : cell.fewest;
       mean.most = std::max(mean.most, cell.most);
     }
-    if (cell.number) levels.push_back({geometric ? std::log(cell.number->value) : cell.number->value});
+    if (!cell.number) continue;
+    const double value = cell.number->value;
+    sum += geometric ? std::log(value) : value;
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
+    ++count;
   }
-  if (levels.empty()) return mean;
-  Estimate estimate = bootstrap_mean(levels, 0.95, 4000, Seed{1});
-  if (geometric) estimate = {std::exp(estimate.value), std::exp(estimate.low), std::exp(estimate.high)};
-  mean.number = estimate;
+  if (count == 0) return mean;
+  sum /= static_cast<double>(count);
+  mean.number = {geometric ? std::exp(sum) : sum, least, greatest};
   return mean;
 }
 

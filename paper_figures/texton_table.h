@@ -12,7 +12,8 @@
 //                 between the MNI of the runs (crossing.h). The floor is taken as it is, without an error of its own,
 //                 and falls with the number of samples.
 //
-// The number of a row is the mean over its exemplars, geometric for impacts, with its 95 % interval.
+// The number of a row is the mean over its exemplars, geometric for kurtosis and impacts, with the least and the
+// greatest of them; that of an exemplar has the 95 % interval of its samples where it is measured on samples.
 //
 // [[figures]] keys: `labels`, a list of {run, label} that gives rows their names.
 #pragma once
@@ -35,7 +36,7 @@ struct TextonColumn {
 std::vector<TextonColumn> texton_columns();
 
 struct TextonCell {
-  std::optional<Estimate> number;    ///< of one exemplar's closed form, with an interval of no width
+  std::optional<Estimate> number;    ///< a closed form of one exemplar has an interval of no width
   std::size_t below = 0, above = 0;  ///< exemplars that need fewer or more impacts than any of the runs has
   double fewest = 0, most = 0;       ///< impacts of the runs
 };
