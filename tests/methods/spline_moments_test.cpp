@@ -6,7 +6,7 @@
 
 #include "methods/base/bspline.h"
 #include "methods/base/random.h"
-#include "methods/spot/texton_mix.h"
+#include "methods/spot/kernel_moments.h"
 
 namespace textonbench::spline_moments_test {
 
@@ -26,7 +26,7 @@ SplineTexton random_texton(int order, Extent extent, std::uint64_t kernels) {
 
 TEST(SplineMoments, OfOrderZeroAreThoseOfTheKernelsPixels) {
   const SplineTexton texton = random_texton(0, {7, 5}, 3);
-  EXPECT_NEAR(spline_kurtosis(texton)[0], kernel_kurtosis(texton.coefficients.kernels, 35)[0], 1e-12);
+  EXPECT_NEAR(spline_kurtosis(texton)[0], poisson_moments(texton.coefficients, 1)[0].excess_kurtosis, 1e-12);
 }
 
 /// One coefficient: A ∫ β⁴ ∫ β⁴ / (∫ β²)⁴ by the midpoint rule, whose error here is below 1e-7.
