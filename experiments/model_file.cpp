@@ -10,7 +10,6 @@
 #include "experiments/files.h"
 #include "experiments/texton_file.h"
 #include "methods/base/bspline.h"
-#include "methods/spot/support.h"
 
 namespace textonbench {
 namespace {
@@ -20,6 +19,9 @@ using Json = nlohmann::ordered_json;
 constexpr const char* model_format = "textonbench model";
 constexpr int model_version = 1;
 constexpr int largest_side = 1 << 15;
+
+/// Support of kernels with coefficients on a whole box.
+double spline_area(Extent box, int order) { return (box.width + order) * (box.height + order); }
 
 /// A model file, for errors that name it and the key.
 class ModelReader {
@@ -148,7 +150,7 @@ ModelFile read_model_file(const std::filesystem::path& file) {
   if (json.contains("order")) {
     model.order = static_cast<int>(reader.whole(json, "order", 0, max_bspline_order));
     model.support_area = reader.number(reader.at(json, "support_area"), "support_area");
-    const double box = spline_support_area(rectangle_support(model.texton.extent()), *model.order);
+    const double box = spline_area(model.texton.extent(), *model.order);
     if (!(model.support_area > 0 && model.support_area <= box)) {
       reader.refuse("support_area", fmt::format("a number above 0, at most {}", box));
     }
@@ -195,7 +197,7 @@ ModelFile read_texton_as_model(const std::filesystem::path& file) {
   model.texton.kernels.push_back(crop(texton.coefficients, frame, frame, inner));
   if (texton.order > 0) {
     model.order = texton.order;
-    model.support_area = spline_support_area(rectangle_support(inner), texton.order);
+    model.support_area = spline_area(inner, texton.order);
   }
   return model;
 }

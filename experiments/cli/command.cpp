@@ -72,6 +72,19 @@ std::map<std::string, ParamValue> ModelOptions::given_params(std::span<const Par
 
 Params ModelOptions::read_params(const MethodEntry& entry) const { return {entry.params, given_params(entry.params)}; }
 
+Domain ModelOptions::read_domain(const MethodEntry& entry, const Problem& problem, const Params& options) const {
+  const Extent asked = read_size();
+  Domain domain{.size = asked.area() > 0 ? asked : problem.exemplar.pixels.extent(),
+                .step = step,
+                .periodic = periodic || (size.empty() && !no_periodic)};
+  if (!periodic && domain.periodic && entry.refuses(problem, options, domain)) {
+    Domain window = domain;
+    window.periodic = false;
+    if (!entry.refuses(problem, options, window)) return window;
+  }
+  return domain;
+}
+
 Extent ModelOptions::read_size() const { return size.empty() ? Extent{} : parse_size(size); }
 
 std::filesystem::path find_config(const std::filesystem::path& home, const std::string& name_or_file) {

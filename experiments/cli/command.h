@@ -70,8 +70,9 @@ struct ModelOptions {
   Params read_params(const MethodEntry& entry) const;
   /// The size asked for, or 0x0 for the exemplar's own.
   Extent read_size() const;
-  /// The exemplar's own torus is the usual domain, and a window of the plane for a size of one's own.
-  bool is_periodic() const { return periodic || (size.empty() && !no_periodic); }
+  /// What to sample on. Without further words it is the exemplar's own torus, or a window of its size where the method
+  /// serves no torus; for a size of one's own, a window of the plane.
+  Domain read_domain(const MethodEntry& entry, const Problem& problem, const Params& options) const;
 };
 
 /// A file, or the name of a config below configs/ ("lectures2022/rpn_adsn").

@@ -38,7 +38,6 @@ struct Fitted {
 Fitted fit_to_exemplar(const ModelOptions& asked, bool quiet) {
   const MethodEntry& method = find_method(asked.method);
   const Params params = asked.read_params(method);
-  const Extent asked_size = asked.read_size();
   const ExemplarCatalog catalog(home_folder());
   std::vector<std::string> notes;
   const Exemplar exemplar = load_exemplar(find_exemplar(catalog, asked.exemplar), &notes);
@@ -46,12 +45,10 @@ Fitted fit_to_exemplar(const ModelOptions& asked, bool quiet) {
     for (const std::string& note : notes) fmt::print(stderr, "{}: {}\n", exemplar.name, note);
   }
   require_usable(exemplar);
-  const Domain domain{.size = asked_size.area() > 0 ? asked_size : exemplar.pixels.extent(),
-                      .step = asked.step,
-                      .periodic = asked.is_periodic()};
   std::optional<Exemplar> second;
   if (const auto named = second_exemplar(method, params.values(), catalog)) second = load_exemplar(*named);
   const Problem problem{exemplar, second ? &*second : nullptr};
+  const Domain domain = asked.read_domain(method, problem, params);
   if (const std::optional<std::string> reason = method.refuses(problem, params, domain)) {
     throw std::invalid_argument(fmt::format("{} cannot do this: {}", asked.method, *reason));
   }
