@@ -48,7 +48,7 @@ std::vector<ParamSpec> make_mixing_params() {
     if (spec.name == "impacts") {
       spec.help =
           "where kernels fall, each of random sign: one in each cell of a lattice (stratified), or at the points "
-          "of a Poisson process (signed_poisson), which takes about six times as many to look as Gaussian";
+          "of a Poisson process (signed_poisson), which takes several times as many to look as Gaussian";
       spec.choices = {"signed_poisson", "stratified"};
     }
     all.push_back(std::move(spec));

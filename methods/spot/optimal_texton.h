@@ -21,9 +21,9 @@
 namespace textonbench {
 
 struct OptimalTextonOptions {
-  int kernels = 4;       ///< K, at least 1
-  int evaluations = 60;  ///< of the relative model error and its gradient, each K transforms a channel and back; as
-                         ///< many again for the constraint of colors
+  int kernels = 4;        ///< K, at least 1
+  int evaluations = 100;  ///< of the relative model error and its gradient, each K transforms a channel and back; as
+                          ///< many again for the constraint of colors
   /// Asks for the exemplar's color covariance, Σ_k Σ_x h_k h_kᵀ = B, while minimizing: less error than mapping the
   /// colors of free textons afterwards. An augmented Lagrangian, whose small residual an exact linear map takes off.
   bool keep_color_covariance = false;

@@ -156,32 +156,31 @@ SplineTexton fit_texton_noise(const Exemplar& exemplar, const Params& params, Se
 }
 
 std::vector<ParamSpec> spline_noise_params() {
-  return {
-      {.name = "impacts",
-       .default_value = std::string("stratified"),
-       .unit = "",
-       .help = "where kernels fall: one of random sign in each cell of a lattice (stratified); at the points of a "
-               "Poisson process, which takes about six times as many to look as Gaussian, all of weight 1 (poisson) "
-               "or of random sign (signed_poisson); or as the paper's shader draws them, with its defects",
-       .choices = {"poisson", "signed_poisson", "stratified", "paper"}},
-      {.name = "mni",
-       .default_value = 5.0,
-       .unit = "impact",
-       .help = "mean number of impacts that cover a point; the paper takes 30 of poisson impacts",
-       .min = 1e-6,
-       .max = 1e6},
-      {.name = "cell",
-       .default_value = 0.0,
-       .unit = "support side",
-       .help = "side of the cells that poisson and paper impacts are drawn by; 0: the fastest, 0.6 for paper",
-       .min = 0,
-       .max = 16},
-      {.name = "route",
-       .default_value = std::string("auto"),
-       .unit = "",
-       .help = "how a raster is computed: point by point (any step), row by row of each impact, by Fourier "
-               "transform of the impacts (convolution), or the fastest of them",
-       .choices = {"auto", "points", "impacts", "convolution"}}};
+  return {{.name = "impacts",
+           .default_value = std::string("stratified"),
+           .unit = "",
+           .help = "where kernels fall: one of random sign in each cell of a lattice (stratified); at the points of a "
+                   "Poisson process, which takes several times as many to look as Gaussian, all of weight 1 (poisson) "
+                   "or of random sign (signed_poisson); or as the paper's shader draws them, with its defects",
+           .choices = {"poisson", "signed_poisson", "stratified", "paper"}},
+          {.name = "mni",
+           .default_value = 5.0,
+           .unit = "impact",
+           .help = "mean number of impacts that cover a point; the paper takes 30 of poisson impacts",
+           .min = 1e-6,
+           .max = 1e6},
+          {.name = "cell",
+           .default_value = 0.0,
+           .unit = "support side",
+           .help = "side of the cells that poisson and paper impacts are drawn by; 0: the fastest, 0.6 for paper",
+           .min = 0,
+           .max = 16},
+          {.name = "route",
+           .default_value = std::string("auto"),
+           .unit = "",
+           .help = "how a raster is computed: point by point (any step), row by row of each impact, by Fourier "
+                   "transform of the impacts (convolution), or the fastest of them",
+           .choices = {"auto", "points", "impacts", "convolution"}}};
 }
 
 SplineNoiseOptions spline_noise_options(const Params& params) {

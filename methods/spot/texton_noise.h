@@ -5,7 +5,7 @@
 // minimization of the relative model error (optimal_texton.h), at the same cost a pixel.
 //
 // The division by b̂^{1/2}, down to 0.009 in the corner of the spectrum at order 5, has no floor: on photographs and a
-// support of 30 x 30 the error of the noise stays within 0.005 of that of order 0 at all orders, and the corrected
+// support of 30 x 30 the error of the noise stays within 0.006 of that of order 0 at all orders, and the corrected
 // colors exact to 1e-7; the coefficients alone grow (by 8 at order 5).
 #pragma once
 

@@ -82,11 +82,11 @@ TEST(OptimalTexton, SixtyEvaluationsReachAThousandProjections) {
     constexpr int seeds = 3;
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
       projections += projected_rme(model, mask, 1000, seed) / seeds;
-      one += fit_optimal_texton(model, mask, {.kernels = 1}, Seed{seed}).rme / seeds;
+      one += fit_optimal_texton(model, mask, {.kernels = 1, .evaluations = 60}, Seed{seed}).rme / seeds;
     }
     // One texton has many local minima, so that means over seeds are compared.
     EXPECT_LT(one, projections + 0.002) << channels;
-    const OptimalTexton four = fit_optimal_texton(model, mask, {}, Seed{1});
+    const OptimalTexton four = fit_optimal_texton(model, mask, {.evaluations = 60}, Seed{1});
     EXPECT_LT(four.rme, projections) << channels;
     EXPECT_LE(four.evaluations, 60);
   }
