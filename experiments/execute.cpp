@@ -187,6 +187,7 @@ class Execution {
     MetricValue value = measure_samples(*statistic, samples_, domain_);
     const std::unique_ptr<Model> limit = gaussian_limit(*model_);
     std::vector<Image> floor_samples;
+    floor_samples.reserve(static_cast<std::size_t>(spec_.samples));
     for (int i = 0; i < spec_.samples; ++i) {
       floor_samples.push_back(limit->synthesize(domain_, derive(part("limit"), static_cast<std::uint64_t>(i))));
     }

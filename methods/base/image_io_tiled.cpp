@@ -15,8 +15,14 @@
 namespace textonbench {
 namespace {
 
+std::filesystem::path name_beside(const std::filesystem::path& file) {
+  return file.parent_path() / fmt::format(".{}.{}.exr", file.stem().string(), getpid());
+}
+
+}  // namespace
+
 /// OpenImageIO does not tell when the disk is full; this file remembers.
-class WatchedFile : public OIIO::Filesystem::IOProxy {
+class TiledImageWriter::WatchedFile final : public OIIO::Filesystem::IOProxy {
  public:
   explicit WatchedFile(const std::filesystem::path& file)
       : IOProxy(file.string(), Write), stream_(file, std::ios::binary), error_(stream_ ? 0 : errno) {}
@@ -50,12 +56,6 @@ class WatchedFile : public OIIO::Filesystem::IOProxy {
   std::ofstream stream_;
   int error_ = 0;
 };
-
-std::filesystem::path name_beside(const std::filesystem::path& file) {
-  return file.parent_path() / fmt::format(".{}.{}.exr", file.stem().string(), getpid());
-}
-
-}  // namespace
 
 struct TiledImageWriter::Output {
   explicit Output(std::filesystem::path path) : beside(std::move(path)), file(beside) {}

@@ -32,6 +32,7 @@ class TiledImageWriter {
   void finish();
 
  private:
+  class WatchedFile;
   struct Output;
   std::unique_ptr<Output> output_;
   std::filesystem::path file_;

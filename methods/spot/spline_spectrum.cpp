@@ -52,7 +52,8 @@ CrossSpectrum spline_spectrum(const SplineTexton& texton, Extent grid) {
 
 Image spline_overlap(const Image& coefficients, int order) {
   const std::span<const double> b = bspline_autocorrelation(order);
-  const auto [width, height] = coefficients.extent();
+  const int width = coefficients.width();
+  const int height = coefficients.height();
   Image result(coefficients.extent(), coefficients.channels());
   parallel_for(coefficients.channels(), [&](int c) {
     std::vector<double> along_rows(static_cast<std::size_t>(coefficients.extent().area()));
