@@ -60,7 +60,9 @@ std::string title_of(const Key& key, const std::set<std::string>& varying) {
 
 std::string detail_of(const PlannedRun& run) {
   std::string text = run.spec.method;
-  for (const auto& [name, value] : run.spec.params) text += fmt::format(", {} = {}", name, to_string(value));
+  for (const auto& [name, value] : run.spec.params) {
+    if (const std::string told = to_string(value); !told.empty()) text += fmt::format(", {} = {}", name, told);
+  }
   if (run.spec.size.area() > 0) text += ", " + format_size(run.spec.size.width, run.spec.size.height);
   if (!run.spec.periodic) text += ", not periodic";
   return text + fmt::format(", {} sample{}", run.spec.samples, run.spec.samples == 1 ? "" : "s");
