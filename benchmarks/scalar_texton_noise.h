@@ -26,7 +26,7 @@ class ScalarTextonNoise {
       double integral = 0;
       for (int y = 0; y < height_; ++y) {
         for (int x = 0; x < width_; ++x) {
-          texels_[texel(x + 1, y + 1) + static_cast<std::size_t>(c)] = kernel.at(c, x, y);
+          texels_[static_cast<std::size_t>(texel(x + 1, y + 1) + c)] = kernel.at(c, x, y);
           integral += kernel.at(c, x, y);
         }
       }
@@ -53,7 +53,7 @@ class ScalarTextonNoise {
   }
 
  private:
-  std::size_t texel(int x, int y) const { return static_cast<std::size_t>(3 * (y * (width_ + 2) + x)); }
+  std::ptrdiff_t texel(int x, int y) const { return 3 * (std::ptrdiff_t{y} * (width_ + 2) + x); }
 
   /// Sum at (x, y), the coordinates being local to a cell as soon as an impact is compared with them.
   void add_cells(float x, float y, std::vector<CellImpact>& impacts, float* sum) const {
@@ -109,7 +109,7 @@ class ScalarTextonNoise {
     const float tx = dx - fx;
     const float ty = dy - fy;
     const float* above = texels_.data() + texel(static_cast<int>(fx) + 1, static_cast<int>(fy) + 1);
-    const float* below = above + 3 * (width_ + 2);
+    const float* below = above + std::ptrdiff_t{3} * (width_ + 2);
     for (int c = 0; c < 3; ++c) {
       sum[c] += weight *
                 ((1 - ty) * ((1 - tx) * above[c] + tx * above[c + 3]) + ty * ((1 - tx) * below[c] + tx * below[c + 3]));

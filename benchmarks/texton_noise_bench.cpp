@@ -250,6 +250,7 @@ void single_points(benchmark::State& state) {
   const auto cell = static_cast<double>(state.range(1)) / 100;
   const auto model = make_spline_noise(noise_texton(64), {.mni = static_cast<double>(state.range(0)), .cell = cell});
   std::vector<Point2> points;
+  points.reserve(4000);
   for (int i = 0; i < 4000; ++i) {
     points.push_back({1000.0 * (i % 63), 777.7 * i});
   }
