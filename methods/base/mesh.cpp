@@ -32,7 +32,7 @@ Vector3d vector_at(const std::vector<tinyobj::real_t>& numbers, int index, std::
         fmt::format("{}: a face refers to {} {}; expected 1 to {}", file.string(), what, index + 1, count));
   }
   const auto first = 3 * static_cast<std::size_t>(index);
-  const Vector3d vector(numbers[first], numbers[first + 1], numbers[first + 2]);
+  Vector3d vector(numbers[first], numbers[first + 1], numbers[first + 2]);
   if (!vector.allFinite()) {
     throw std::invalid_argument(fmt::format("{}: {} {} is ({}, {}, {}); expected finite numbers", file.string(), what,
                                             index + 1, vector.x(), vector.y(), vector.z()));

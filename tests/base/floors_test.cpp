@@ -36,7 +36,7 @@ const std::map<std::string, std::vector<std::string>, std::less<>> foundations =
 
 /// Headers of libraries (by their beginning) with the files (by theirs) that may include them.
 const std::map<std::string, std::vector<std::string>, std::less<>> library_users = {
-    {"OpenImageIO/", {"methods/base/image_io"}},  {"fftw3", {"methods/base/fft_plan.cpp"}},
+    {"OpenImageIO/", {"methods/base/image_io"}},      {"fftw3", {"methods/base/fft_plan.cpp"}},
     {"Random123/", {"methods/base/random"}},          {"toml++/", {"experiments/toml_reader"}},
     {"openssl/", {"experiments/provenance"}},         {"kainjow/", {"paper_figures/"}},
     {"sqlite3", {"paper_figures/export_sqlite.cpp"}}, {"CLI/", {"experiments/cli/"}},
