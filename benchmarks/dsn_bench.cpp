@@ -9,28 +9,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <ctime>
 #include <string>
 #include <vector>
 
+#include "benchmarks/timing.h"
 #include "methods/spot/spot_noise.h"
 
 namespace textonbench {
 namespace {
 
 constexpr int channels = 3;
-
-/// Processor time, all work being on one thread, so that other programs on the machine disturb it little.
-double seconds_of(const auto& work) {
-  const std::clock_t start = std::clock();
-  work();
-  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-}
-
-double median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-  return values[values.size() / 2];
-}
 
 Texton noise_texton(int side) {
   Texton texton;
@@ -62,7 +50,7 @@ double floor_seconds(double floats) {
   from.set_zero();
   to.set_zero();
   const auto chunks = static_cast<std::int64_t>(std::ceil(std::min(floats, 0x1p26) / chunk));
-  const double seconds = seconds_of([&] {
+  const double seconds = processor_seconds_of([&] {
     for (std::int64_t i = 0; i < chunks; ++i) {
       saxpy(from.data(), 0.5F, chunk, to.data());
       benchmark::ClobberMemory();
@@ -72,7 +60,7 @@ double floor_seconds(double floats) {
 }
 
 double synthesis_seconds(const Model& model, const Domain& domain, std::uint64_t seed) {
-  return seconds_of([&] { benchmark::DoNotOptimize(model.synthesize(domain, Seed{seed}).plane(0)); });
+  return processor_seconds_of([&] { benchmark::DoNotOptimize(model.synthesize(domain, Seed{seed}).plane(0)); });
 }
 
 struct Case {

@@ -6,25 +6,13 @@
 #include <fftw3.h>
 #include <tbb/global_control.h>
 
-#include <algorithm>
-#include <chrono>
 #include <vector>
 
+#include "benchmarks/timing.h"
 #include "methods/method.h"
 
 namespace textonbench {
 namespace {
-
-double seconds_of(const auto& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-  return values[values.size() / 2];
-}
 
 Exemplar noise_exemplar(int side) {
   Exemplar exemplar{"noise", Image({side, side}, 3), ""};

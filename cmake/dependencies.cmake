@@ -6,3 +6,4 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3f)
 # By pkg-config: the CMake package also insists on OpenImageIO's command-line tools, and so on Qt.
 pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO>=2.4)
+find_package(tinyobjloader REQUIRED)

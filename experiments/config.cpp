@@ -79,6 +79,7 @@ void read_layer(TableReader& layer, RunsTable& runs) {
       runs.periodic.push_back(read_bool(*element, "periodic"));
     }
   });
+  read("step", [&](const TomlValue& v) { runs.step = read_positive(v, "step", 1e6); });
   read("samples",
        [&](const TomlValue& v) { runs.samples = static_cast<int>(read_integer(v, "samples", 1, most_samples)); });
   read("timeout_seconds", [&](const TomlValue& v) {

@@ -46,6 +46,7 @@ struct RunsTable {
   std::vector<std::uint64_t> seeds{1};
   std::vector<Extent> sizes{Extent{}};
   std::vector<bool> periodic{true};
+  double step = 1;  ///< between pixels of a sample; at another one only models are measured
   int samples = 1;
   double timeout_seconds = 300;
   int memory_limit_mb = 0;  ///< of each run; 0: a share of the machine's memory

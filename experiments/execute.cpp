@@ -9,6 +9,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "experiments/metrics/gaussian_limit.h"
 #include "experiments/metrics/metric.h"
 #include "experiments/pictures.h"
 #include "experiments/provenance.h"
@@ -80,12 +81,16 @@ Record to_json(const MetricValue& value, std::string_view unit) {
 /// One run on its way from exemplar to numbers.
 class Execution {
  public:
-  Execution(const RunSpec& spec, const Exemplar& exemplar)
+  /// `second` may be null.
+  Execution(const RunSpec& spec, const Exemplar& exemplar, const Exemplar* second)
       : spec_(spec),
         exemplar_(exemplar),
+        second_(second),
         method_(find_method(spec.method)),
         params_(method_.params, spec.params),
-        domain_{.size = spec.size.area() > 0 ? spec.size : exemplar.pixels.extent(), .periodic = spec.periodic} {}
+        domain_{.size = spec.size.area() > 0 ? spec.size : exemplar.pixels.extent(),
+                .step = spec.step,
+                .periodic = spec.periodic} {}
 
   std::optional<std::string> refusal() const { return method_.refuses(problem(), params_, domain_); }
 
@@ -107,7 +112,7 @@ class Execution {
         return value ? std::optional(plain(*value)) : std::nullopt;
       }
       case MetricLevel::sample:
-        return measure_on_samples(metric);
+        return metric.of_limit != nullptr ? measure_against_limit(metric) : measure_on_samples(metric);
       case MetricLevel::cost:
         return plain(cost(metric.name));
     }
@@ -119,7 +124,7 @@ class Execution {
   }
 
  private:
-  Problem problem() const { return {.exemplar = exemplar_}; }
+  Problem problem() const { return {.exemplar = exemplar_, .second = second_}; }
   Seed part(std::string_view name) const { return derive(Seed{spec_.seed}, name); }
 
   /// The first call also plans transforms and touches fresh memory, so a quick analysis is repeated and the first call
@@ -176,6 +181,20 @@ class Execution {
     return value;
   }
 
+  std::optional<MetricValue> measure_against_limit(const MetricEntry& metric) {
+    const auto statistic = metric.of_limit(*model_, domain_, derive(part("metric"), metric.name));
+    if (statistic == nullptr) return std::nullopt;
+    MetricValue value = measure_samples(*statistic, samples_, domain_);
+    const std::unique_ptr<Model> limit = gaussian_limit(*model_);
+    std::vector<Image> floor_samples;
+    floor_samples.reserve(static_cast<std::size_t>(spec_.samples));
+    for (int i = 0; i < spec_.samples; ++i) {
+      floor_samples.push_back(limit->synthesize(domain_, derive(part("limit"), static_cast<std::uint64_t>(i))));
+    }
+    value.floor = measure_samples(*statistic, floor_samples, domain_).value;
+    return value;
+  }
+
   /// Samples of the exact Gaussian law of the target: circular ADSN of the periodic component on the exemplar's torus,
   /// or its non-circular form on the run's own window.
   void make_floor_samples() {
@@ -192,6 +211,7 @@ class Execution {
 
   const RunSpec& spec_;
   const Exemplar& exemplar_;
+  const Exemplar* second_;
   const MethodEntry& method_;
   Params params_;
   Domain domain_;
@@ -223,21 +243,27 @@ Record unsuccessful_record(const RunSpec& spec, const std::string& status, const
   return blank_record(spec, status, reason);
 }
 
-Record execute(const RunSpec& spec, const ExemplarInfo& info, const ResultsFolder* results) {
+Record execute(const RunSpec& spec, const ExemplarCatalog& exemplars, const ResultsFolder* results) {
   const Clock::time_point start = Clock::now();
   const double cpu_start = cpu_seconds();
   if (spec.samples < 1) throw std::invalid_argument(fmt::format("samples = {}: expected at least 1", spec.samples));
   if (results == nullptr && !spec.pictures.empty()) {
     throw std::invalid_argument("pictures are asked for and there is no results folder to keep them in");
   }
-  const Exemplar exemplar = load_exemplar(info);
+  const Exemplar exemplar = load_exemplar(find_exemplar(exemplars, spec.exemplar));
   if (!spec.exemplar_sha256.empty() && exemplar.sha256 != spec.exemplar_sha256) {
     throw std::invalid_argument(fmt::format("exemplar {} has changed: expected SHA-256 {}, found {}", exemplar.name,
                                             spec.exemplar_sha256, exemplar.sha256));
   }
   require_usable(exemplar);
+  const MethodEntry& method = find_method(spec.method);
+  if (hash_named(method, spec.params, exemplars) != spec.file_sha256) {
+    throw std::invalid_argument("a file that an option names has changed since the run was planned: plan it again");
+  }
+  std::optional<Exemplar> second;
+  if (const auto named = second_exemplar(method, spec.params, exemplars)) second = load_exemplar(*named);
 
-  Execution execution(spec, exemplar);
+  Execution execution(spec, exemplar, second ? &*second : nullptr);
   const std::optional<std::string> refusal = execution.refusal();
   Record record = refusal ? blank_record(spec, "refused", *refusal) : blank_record(spec, "ok", "");
   record["exemplar"] = {{"width", exemplar.pixels.width()},

@@ -20,7 +20,7 @@ Seed sample_seed(std::uint64_t seed, int index);
 ///
 /// All samples are held at once, and for sample-level metrics as many of the floor: about
 /// 2 x samples x size x channels x 4 bytes beside the model.
-Record execute(const RunSpec& spec, const ExemplarInfo& exemplar, const ResultsFolder* results);
+Record execute(const RunSpec& spec, const ExemplarCatalog& exemplars, const ResultsFolder* results);
 
 /// A record of status "failed" (or "refused") with the same fields, for a run that ended without one.
 Record unsuccessful_record(const RunSpec& spec, const std::string& status, const std::string& reason);

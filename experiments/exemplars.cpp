@@ -185,6 +185,19 @@ std::vector<std::string> ExemplarCatalog::tagged(std::string_view tag) const {
   return names;
 }
 
+ExemplarInfo find_exemplar(const ExemplarCatalog& catalog, const std::string& name_or_file) {
+  const std::filesystem::path path = name_or_file;
+  const bool known = std::any_of(catalog.all().begin(), catalog.all().end(),
+                                 [&](const ExemplarInfo& info) { return info.name == name_or_file; });
+  if (known || (!path.has_extension() && !path.has_parent_path())) return catalog.find(name_or_file);
+  ExemplarInfo info;
+  info.name = path.stem().string();
+  info.available = true;
+  info.file = path;
+  info.source = "file";
+  return info;
+}
+
 std::string exemplar_sha256(const ExemplarInfo& info) {
   require_available(info);
   if (info.file.empty()) {

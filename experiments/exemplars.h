@@ -47,6 +47,9 @@ class ExemplarCatalog {
   std::vector<ExemplarInfo> all_;
 };
 
+/// A catalogue name, or the path of a picture file. Throws as ExemplarCatalog::find for a name.
+ExemplarInfo find_exemplar(const ExemplarCatalog& catalog, const std::string& name_or_file);
+
 /// SHA-256 of the file's bytes; of a procedural exemplar, of its name, seed and definition. Cheap: decodes nothing.
 std::string exemplar_sha256(const ExemplarInfo& info);
 

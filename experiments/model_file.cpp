@@ -9,6 +9,7 @@
 
 #include "experiments/files.h"
 #include "experiments/texton_file.h"
+#include "methods/base/bspline.h"
 
 namespace textonbench {
 namespace {
@@ -18,6 +19,9 @@ using Json = nlohmann::ordered_json;
 constexpr const char* model_format = "textonbench model";
 constexpr int model_version = 1;
 constexpr int largest_side = 1 << 15;
+
+/// Support of kernels with coefficients on a whole box.
+double spline_area(Extent box, int order) { return (box.width + order) * (box.height + order); }
 
 /// A model file, for errors that name it and the key.
 class ModelReader {
@@ -143,6 +147,14 @@ ModelFile read_model_file(const std::filesystem::path& file) {
     reader.refuse("mean", fmt::format("{} numbers, one a channel", model.texton.channels()));
   }
   model.texton.support_pixels = reader.whole(json, "support_pixels", 1, model.texton.extent().area());
+  if (json.contains("order")) {
+    model.order = static_cast<int>(reader.whole(json, "order", 0, max_bspline_order));
+    model.support_area = reader.number(reader.at(json, "support_area"), "support_area");
+    const double box = spline_area(model.texton.extent(), *model.order);
+    if (!(model.support_area > 0 && model.support_area <= box)) {
+      reader.refuse("support_area", fmt::format("a number above 0, at most {}", box));
+    }
+  }
   return model;
 }
 
@@ -153,29 +165,40 @@ void write_model_file(const ModelFile& model, const std::filesystem::path& file)
   }
   Json kernels = Json::array();
   for (const Image& kernel : model.texton.kernels) kernels.push_back(kernel_json(kernel));
-  const Json json = {{"format", model_format},
-                     {"version", model_version},
-                     {"method", model.method},
-                     {"params", std::move(params)},
-                     {"exemplar", {{"name", model.exemplar}, {"sha256", model.exemplar_sha256}}},
-                     {"seed", model.seed},
-                     {"mean", model.texton.mean},
-                     {"support_pixels", model.texton.support_pixels},
-                     {"kernels", std::move(kernels)}};
+  Json json = {{"format", model_format},
+               {"version", model_version},
+               {"method", model.method},
+               {"params", std::move(params)},
+               {"exemplar", {{"name", model.exemplar}, {"sha256", model.exemplar_sha256}}},
+               {"seed", model.seed},
+               {"mean", model.texton.mean},
+               {"support_pixels", model.texton.support_pixels},
+               {"kernels", std::move(kernels)}};
+  if (model.order) {
+    json["order"] = *model.order;
+    json["support_area"] = model.support_area;
+  }
   write_atomically(file, json.dump() + "\n");
 }
 
 ModelFile read_texton_as_model(const std::filesystem::path& file) {
   TextonFile texton = read_texton_file(file);
-  if (texton.order > 0) {
-    throw std::invalid_argument(fmt::format("{}: a texton of order {}: expected order 0, whose impacts fall on pixels",
-                                            file.string(), texton.order));
+  const int frame = (texton.order + 1) / 2;
+  const Extent inner{texton.coefficients.width() - 2 * frame, texton.coefficients.height() - 2 * frame};
+  if (inner.width < 1 || inner.height < 1) {
+    throw std::invalid_argument(fmt::format("{}: {}x{} coefficients of order {} are nothing but the frame of {} zeros",
+                                            file.string(), texton.coefficients.width(), texton.coefficients.height(),
+                                            texton.order, frame));
   }
   ModelFile model;
   model.exemplar = texton.source;
   model.texton.mean.assign(texton.mean.begin(), texton.mean.end());
-  model.texton.support_pixels = texton.coefficients.extent().area();
-  model.texton.kernels.push_back(std::move(texton.coefficients));
+  model.texton.support_pixels = inner.area();
+  model.texton.kernels.push_back(crop(texton.coefficients, frame, frame, inner));
+  if (texton.order > 0) {
+    model.order = texton.order;
+    model.support_area = spline_area(inner, texton.order);
+  }
   return model;
 }
 

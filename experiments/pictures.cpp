@@ -37,9 +37,11 @@ Image smooth_component(const PictureSource& source) {
   return difference;
 }
 
-/// The kernels in a square: zero is mid-gray, and four standard deviations of a kernel's values lie on either side.
+/// The kernels, or their coefficients, in a square: zero is mid-gray, and four standard deviations of a kernel's values
+/// lie on either side.
 Image texton_picture(const PictureSource& source) {
-  const Texton* texton = source.model.texton();
+  const SplineTexton* spline = source.model.spline_texton();
+  const Texton* texton = spline != nullptr ? &spline->coefficients : source.model.texton();
   if (texton == nullptr) throw std::invalid_argument("picture of the texton asked of a method that has none");
   const int count = static_cast<int>(texton->kernels.size());
   const int columns = static_cast<int>(std::ceil(std::sqrt(count))), rows = (count + columns - 1) / columns;

@@ -96,6 +96,15 @@ std::vector<std::string> choose_metrics(const RunsTable& table) {
       }
     });
   }
+  for (const std::string& name : names) {
+    if (table.step != 1 && find_metric(name).level == MetricLevel::sample) {
+      throw ConfigError(
+          place_of(table, "step"),
+          fmt::format("step = {}: {} compares pixels of samples with those of the exemplar, a pixel apart; "
+                      "expected step = 1 or metrics of the levels model and cost",
+                      table.step, name));
+    }
+  }
   return {names.begin(), names.end()};
 }
 

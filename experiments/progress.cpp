@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <utility>
 
 namespace textonbench {
 namespace {
@@ -22,10 +23,13 @@ std::string readable_duration(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
-Progress::Progress(std::size_t total, bool show, const std::filesystem::path& log)
-    : total_(total), show_(show && total > 0), terminal_(isatty(STDERR_FILENO) == 1), log_(log, std::ios::app) {
-  if (!log_) fmt::print(stderr, "textonbench: warning: {}: cannot be written\n", log.string());
-  write_log(fmt::format("start: {} runs to make", total_));
+Progress::Progress(std::size_t total, std::string unit, bool show, const std::filesystem::path& log)
+    : total_(total), unit_(std::move(unit)), show_(show && total > 0), terminal_(isatty(STDERR_FILENO) == 1) {
+  if (!log.empty()) {
+    log_.open(log, std::ios::app);
+    if (!log_) fmt::print(stderr, "textonbench: warning: {}: cannot be written\n", log.string());
+  }
+  write_log(fmt::format("start: {} {} to make", total_, unit_));
   if (show_ && terminal_) print();
 }
 
@@ -53,7 +57,7 @@ void Progress::advance(const std::string& failure) {
 }
 
 std::string Progress::state() const {
-  std::string line = fmt::format("{}/{} runs", done_, total_);
+  std::string line = fmt::format("{}/{} {}", done_, total_, unit_);
   if (failed_ > 0) line += fmt::format(", {} failed", failed_);
   if (done_ > 0 && done_ < total_) {
     const double left = seconds() / static_cast<double>(done_) * static_cast<double>(total_ - done_);

@@ -16,8 +16,9 @@ std::string readable_duration(double seconds);
 /// log begin with the time and the process, since several may share it.
 class Progress {
  public:
-  /// Appends to `log` from then on. A log that cannot be written is told once and is no reason to stop.
-  Progress(std::size_t total, bool show, const std::filesystem::path& log);
+  /// `unit`: what is counted, in the plural: "runs". Appends to `log`, if it is not empty, from then on. A log that
+  /// cannot be written is told once and is no reason to stop.
+  Progress(std::size_t total, std::string unit, bool show, const std::filesystem::path& log);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress();
@@ -35,6 +36,7 @@ class Progress {
   void write_log(const std::string& text);
 
   std::size_t total_, done_ = 0, failed_ = 0;
+  std::string unit_;
   bool show_, terminal_;
   std::ofstream log_;
   Clock::time_point start_ = Clock::now(), printed_ = start_, logged_ = start_;

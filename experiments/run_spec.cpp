@@ -18,8 +18,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::string_view, 10> keys{"method",   "params", "exemplar", "exemplar_sha256", "size",
-                                                "periodic", "seed",   "samples",  "metrics",         "pictures"};
+constexpr std::array<std::string_view, 12> keys{"method",  "params",   "file_sha256", "exemplar", "exemplar_sha256",
+                                                "size",    "periodic", "step",        "seed",     "samples",
+                                                "metrics", "pictures"};
 
 [[noreturn]] void refuse(std::string_view key, std::string_view expected, const Json& found) {
   throw std::invalid_argument(fmt::format("run spec: {}: expected {}, found {}", key, expected, found.dump()));
@@ -99,6 +100,39 @@ std::string quote(const std::string& word) {
 
 }  // namespace
 
+std::optional<ExemplarInfo> second_exemplar(const MethodEntry& method, const std::map<std::string, ParamValue>& params,
+                                            const ExemplarCatalog& catalog) {
+  const auto option = std::ranges::find(method.params, "exemplar", &ParamSpec::unit);
+  if (option == method.params.end()) return std::nullopt;
+  const auto given = params.find(std::string(option->name));
+  if (given == params.end()) return std::nullopt;
+  const std::string& name = std::get<std::string>(given->second);
+  return name.empty() ? std::nullopt : std::optional(find_exemplar(catalog, name));
+}
+
+std::map<std::string, std::string> hash_named(const MethodEntry& method,
+                                              const std::map<std::string, ParamValue>& params,
+                                              const ExemplarCatalog& catalog) {
+  std::map<std::string, std::string> hashes;
+  for (const ParamSpec& option : method.params) {
+    const auto given = params.find(std::string(option.name));
+    if (given == params.end()) continue;
+    try {
+      if (option.unit == "exemplar") {
+        if (const auto second = second_exemplar(method, params, catalog)) {
+          hashes.emplace(option.name, exemplar_sha256(*second));
+        }
+      } else if (option.unit == "file") {
+        const std::string& file = std::get<std::string>(given->second);
+        if (!file.empty()) hashes.emplace(option.name, sha256_of_file(file));
+      }
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("option {}: {}", option.name, error.what()));
+    }
+  }
+  return hashes;
+}
+
 Json to_json(const RunSpec& spec) {
   Json params = Json::object();
   for (const auto& [name, value] : spec.params) {
@@ -107,10 +141,12 @@ Json to_json(const RunSpec& spec) {
   Json json;
   json["method"] = spec.method;
   json["params"] = std::move(params);
+  if (!spec.file_sha256.empty()) json["file_sha256"] = spec.file_sha256;
   json["exemplar"] = spec.exemplar;
   json["exemplar_sha256"] = spec.exemplar_sha256;
   json["size"] = {spec.size.width, spec.size.height};
   json["periodic"] = spec.periodic;
+  if (spec.step != 1) json["step"] = spec.step;
   json["seed"] = spec.seed;
   json["samples"] = spec.samples;
   json["metrics"] = spec.metrics;
@@ -136,6 +172,15 @@ RunSpec run_spec_from_json(const Json& json) {
   for (const auto& [name, value] : params.items()) {
     spec.params.emplace(name, read_param(name, value));
   }
+  if (json.contains("file_sha256")) {
+    const Json& hashes = json["file_sha256"];
+    if (!hashes.is_object()) {
+      refuse("file_sha256", "an object", hashes);
+    }
+    for (const auto& [name, hash] : hashes.items()) {
+      spec.file_sha256.emplace(name, read_text(hashes, name));
+    }
+  }
   spec.exemplar = read_text(json, "exemplar");
   spec.exemplar_sha256 = read_text(json, "exemplar_sha256");
   const Json& size = require(json, "size");
@@ -148,6 +193,10 @@ RunSpec run_spec_from_json(const Json& json) {
     refuse("periodic", "true or false", periodic);
   }
   spec.periodic = periodic.get<bool>();
+  if (json.contains("step")) {
+    if (!json["step"].is_number()) refuse("step", "a number", json["step"]);
+    spec.step = json["step"].get<double>();
+  }
   spec.seed = read_whole(require(json, "seed"), "seed", 0, std::numeric_limits<std::uint64_t>::max());
   spec.samples = read_int(require(json, "samples"), "samples", 1);
   spec.metrics = read_names(json, "metrics");
@@ -190,6 +239,7 @@ std::string command_line(const RunSpec& spec) {
   } else if (!spec.periodic) {
     command += " --no-periodic";
   }
+  if (spec.step != 1) command += fmt::format(" --step {}", spec.step);
   return command + fmt::format(" --seed {} --samples {}", spec.seed, spec.samples);
 }
 

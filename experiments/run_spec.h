@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "experiments/exemplars.h"
 #include "methods/base/params.h"
 #include "methods/method.h"
 
@@ -16,11 +18,13 @@ namespace textonbench {
 /// A model of one exemplar and what is measured on it. `samples` samples are drawn, with seeds derived from `seed`.
 struct RunSpec {
   std::string method;
-  std::map<std::string, ParamValue> params;  ///< complete: defaults included
+  std::map<std::string, ParamValue> params;             ///< complete: defaults included
+  std::map<std::string, std::string> file_sha256 = {};  ///< of what an option names, by option (see hash_named)
   std::string exemplar;
   std::string exemplar_sha256;
   Extent size;  ///< of the samples; 0x0 means the exemplar's own size
   bool periodic = true;
+  double step = 1;  ///< between pixels of a sample, in pixels of the exemplar
   std::uint64_t seed = 1;
   int samples = 1;
   std::vector<std::string> metrics;   ///< catalogue names, sorted
@@ -30,7 +34,18 @@ struct RunSpec {
   int memory_limit_mb = 0;  ///< 0: a share of the machine's memory
 };
 
-/// JSON with a fixed key order; the limits are left out.
+/// SHA-256 of what every option names whose unit is "file" or "exemplar" and that is not empty: two runs with the same
+/// path and other content are not the same. Throws std::invalid_argument with the option for a file that cannot be
+/// read or an exemplar that is not here.
+std::map<std::string, std::string> hash_named(const MethodEntry& method,
+                                              const std::map<std::string, ParamValue>& params,
+                                              const ExemplarCatalog& catalog);
+
+/// The exemplar that an option of unit "exemplar" names, if there is such an option and it is not empty.
+std::optional<ExemplarInfo> second_exemplar(const MethodEntry& method, const std::map<std::string, ParamValue>& params,
+                                            const ExemplarCatalog& catalog);
+
+/// JSON with a fixed key order; the limits are left out, and file_sha256 where no option names a file.
 nlohmann::ordered_json to_json(const RunSpec& spec);
 /// Throws std::invalid_argument naming the key that is missing or wrong.
 RunSpec run_spec_from_json(const nlohmann::ordered_json& json);

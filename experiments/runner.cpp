@@ -67,7 +67,7 @@ std::string work(const RunSpec& spec, const ExemplarCatalog& exemplars, const Re
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   Record record;
   try {
-    record = execute(spec, exemplars.find(spec.exemplar), &results);
+    record = execute(spec, exemplars, &results);
   } catch (const std::bad_alloc&) {
     throw;  // there may be no memory for a record
   } catch (const std::exception& error) {
@@ -187,7 +187,7 @@ RunSummary run_plan(const Plan& plan, const ExemplarCatalog& exemplars, const Re
   }
   // Looked up here once, and inherited by every child.
   provenance();
-  Progress progress(pending.size(), options.show_progress, log_file(results));
+  Progress progress(pending.size(), "runs", options.show_progress, log_file(results));
   const StopSignals stop;
   std::list<Running> running;
   while (!pending.empty() || !running.empty()) {

@@ -35,7 +35,10 @@ bool Exclusion::matches(const RunSpec& run) const {
 }
 
 Sweep::Sweep(const RunsTable& table, SweepChoices choices, const ExemplarCatalog& catalog)
-    : table_(table), choices_(std::move(choices)), params_(table.params.begin(), table.params.end()) {
+    : table_(table),
+      choices_(std::move(choices)),
+      catalog_(catalog),
+      params_(table.params.begin(), table.params.end()) {
   axes_ = {{"method", choices_.methods.size()},
            {"exemplars", choices_.exemplars.size()},
            {"size", table.sizes.size()},
@@ -57,7 +60,7 @@ Sweep::Sweep(const RunsTable& table, SweepChoices choices, const ExemplarCatalog
     check_ablation();
   }
   for (std::size_t i = 0; i < table.exclude.size(); ++i) {
-    exclusions_.push_back(read_exclusion(i, catalog));
+    exclusions_.push_back(read_exclusion(i));
   }
 }
 
@@ -171,7 +174,7 @@ ParamValue Sweep::check_param(const MethodEntry& method, const std::string& name
   });
 }
 
-Exclusion Sweep::read_exclusion(std::size_t index, const ExemplarCatalog& catalog) const {
+Exclusion Sweep::read_exclusion(std::size_t index) const {
   Exclusion exclusion;
   for (const auto& [key, value] : table_.exclude[index]) {
     const std::string path = fmt::format("exclude[{}].{}", index, key);
@@ -179,7 +182,7 @@ Exclusion Sweep::read_exclusion(std::size_t index, const ExemplarCatalog& catalo
     if (key == "method") {
       exclusion.method = at_place(table_, path, [&] { return std::string(find_method(text).name); });
     } else if (key == "exemplar") {
-      exclusion.exemplar = at_place(table_, path, [&] { return catalog.look_up(text).name; });
+      exclusion.exemplar = at_place(table_, path, [&] { return catalog_.look_up(text).name; });
     } else if (key == "seed") {
       const std::int64_t* seed = std::get_if<std::int64_t>(&value);
       if (seed == nullptr || *seed < 0) {
@@ -220,12 +223,17 @@ RunSpec Sweep::make_spec(const std::vector<std::size_t>& digits) const {
   for (std::size_t i = 0; i < params_.size(); ++i) {
     given.emplace(params_[i].first, params_[i].second[digits[first_param_axis + i]]);
   }
+  const std::map<std::string, ParamValue> params = Params(method.params, given).values();
+  std::map<std::string, std::string> files =
+      at_place(table_, "params", [&] { return hash_named(method, params, catalog_); });
   return {.method = std::string(method.name),
-          .params = Params(method.params, given).values(),
+          .params = params,
+          .file_sha256 = std::move(files),
           .exemplar = exemplar.info->name,
           .exemplar_sha256 = exemplar.sha256,
           .size = table_.sizes[digits[size_axis]],
           .periodic = table_.periodic[digits[periodic_axis]],
+          .step = table_.step,
           .seed = table_.seeds[digits.back()],
           .samples = table_.samples,
           .metrics = choices_.metrics,

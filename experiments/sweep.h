@@ -40,8 +40,8 @@ struct Exclusion {
 
 class Sweep {
  public:
-  /// Checks the parameters and exclusions of `table`, which must outlive the sweep, and the lengths of a zip. Throws
-  /// ConfigError.
+  /// Checks the parameters and exclusions of `table`, which must outlive the sweep like `catalog`, and the lengths of a
+  /// zip. Throws ConfigError.
   Sweep(const RunsTable& table, SweepChoices choices, const ExemplarCatalog& catalog);
 
   /// Number of runs before `exclude`; the largest number there is when it does not fit.
@@ -53,7 +53,7 @@ class Sweep {
  private:
   ParamValue check_param(const MethodEntry& method, const std::string& name, const ParamValue& value,
                          const std::string& path, const std::string& element) const;
-  Exclusion read_exclusion(std::size_t index, const ExemplarCatalog& catalog) const;
+  Exclusion read_exclusion(std::size_t index) const;
   ParamValue read_exclusion_param(const std::string& name, const ParamValue& value, const std::string& path) const;
   void check_zip() const;
   void check_ablation() const;
@@ -66,6 +66,7 @@ class Sweep {
 
   const RunsTable& table_;
   SweepChoices choices_;
+  const ExemplarCatalog& catalog_;
   std::vector<std::pair<std::string, std::vector<ParamValue>>> params_;
   std::vector<Exclusion> exclusions_;
   std::vector<std::pair<std::string, std::size_t>> axes_;  ///< key and number of values, slowest first

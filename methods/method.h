@@ -36,6 +36,7 @@ struct Domain {
 /// What a model is fitted to.
 struct Problem {
   const Exemplar& exemplar;
+  const Exemplar* second = nullptr;  ///< of a method with an option whose unit is "exemplar": what it names
 };
 
 /// The model's own second-order law, in closed form.
@@ -50,11 +51,33 @@ class Gaussian {
   virtual CrossSpectrum spectrum(Extent grid) const = 0;
 };
 
+/// Evaluation of a sample at any point of the plane.
+class Procedural {
+ public:
+  virtual ~Procedural() = default;
+  /// out[c * points.size() + i] = channel c of the sample `seed` at points[i], in pixels of the exemplar: the field
+  /// whose rasters synthesize() draws, to 1e-5 of its standard deviation. The same point gives the same bits in any
+  /// call. Throws std::invalid_argument for a point that is not finite or beyond 2^40 pixels from the origin.
+  virtual void evaluate(std::span<const Point2> points, Seed seed, std::span<float> out) const = 0;
+  /// How often the field can be differentiated; gradients exist from 1 on (almost everywhere at 1).
+  virtual int smoothness() const = 0;
+  /// ∂/∂x of all channels, then ∂/∂y of all channels, a pixel; as evaluate(). Throws std::invalid_argument at
+  /// smoothness 0.
+  virtual void gradient(std::span<const Point2> points, Seed seed, std::span<float> out) const = 0;
+};
+
 /// Cost of a model: bytes that must be kept to synthesise, and arithmetic operations (a complex multiplication counts
 /// 6, an FFT 2.5 n log2 n a real plane) for each output pixel on `domain`.
 struct Footprint {
   std::size_t model_bytes = 0;
   double operations_per_pixel = 0;
+};
+
+/// How an iterative analysis came to its result.
+struct Convergence {
+  std::string_view step;    ///< what is counted: "iteration" or "evaluation"
+  std::vector<double> rme;  ///< relative model error after each step, before any correction of colors
+  std::string_view reason;  ///< why it stopped: "iterations", "evaluations", "tolerance" or "no descent"
 };
 
 /// What analysis returns: immutable, safe to share between threads. A capability that a model lacks is a null pointer.
@@ -65,8 +88,13 @@ class Model {
   /// domain that MethodEntry::refuses would refuse.
   virtual Image synthesize(const Domain& domain, Seed seed) const = 0;
   virtual const Gaussian* gaussian() const { return nullptr; }
-  /// The kernels that the model sums, when it is a spot noise.
+  virtual const Procedural* procedural() const { return nullptr; }
+  /// The kernels that the model sums, when it is a spot noise on Z².
   virtual const Texton* texton() const { return nullptr; }
+  /// The coefficients that the model sums as B-splines, when it is a noise of the plane.
+  virtual const SplineTexton* spline_texton() const { return nullptr; }
+  /// Of a model that an iteration fitted.
+  virtual const Convergence* convergence() const { return nullptr; }
   virtual Footprint footprint(const Domain& domain) const = 0;
 };
 

@@ -10,16 +10,18 @@
 #include "paper_figures/front.h"
 #include "paper_figures/panel.h"
 #include "paper_figures/table.h"
+#include "paper_figures/texton_table.h"
 
 namespace textonbench {
 namespace {
 
-constexpr std::array<FigureKind, 5> kinds{{
+constexpr std::array<FigureKind, 6> kinds{{
     {"panel", check_panel, write_panel, panel_html},
     {"table", check_table, write_table, table_html},
     {"chart", check_chart, write_chart, chart_html},
     {"curve", check_curve, write_curve, curve_html},
     {"front", check_front, write_front, front_html},
+    {"texton_table", check_texton_table, write_texton_table, texton_table_html},
 }};
 
 void require_known(const FigureTable& table, const std::string& key, std::span<const std::string_view> known) {

@@ -17,6 +17,9 @@ constexpr std::array<const char*, 6> colors{"#0072b2", "#d55e00", "#009e73", "#c
 constexpr std::array<int, 6> shapes{7, 5, 9, 13, 11, 15};
 constexpr double pdf_centimeters = 16;
 
+/// Where colors come again, outlines and dashes tell the series apart.
+bool is_second_round(std::size_t series) { return series / colors.size() % 2 == 1; }
+
 }  // namespace
 
 std::size_t count_characters(const std::string& text) {
@@ -27,7 +30,13 @@ std::size_t count_characters(const std::string& text) {
 const char* series_color(std::size_t series) { return colors.at(series % colors.size()); }
 
 std::string series_symbol(std::size_t series, double size) {
-  return fmt::format("pt {} ps {} lc rgb \"{}\"", shapes.at(series % shapes.size()), size, series_color(series));
+  // Each shape's number less one is its outline.
+  const int shape = shapes.at(series % shapes.size()) - (is_second_round(series) ? 1 : 0);
+  return fmt::format("pt {} ps {} lc rgb \"{}\"", shape, size, series_color(series));
+}
+
+std::string series_line(std::size_t series, double width) {
+  return fmt::format("lw {} dt {} lc rgb \"{}\"", width, is_second_round(series) ? 2 : 1, series_color(series));
 }
 
 std::string axis_title(const MetricEntry& metric) {

@@ -20,6 +20,8 @@ std::size_t count_characters(const std::string& text);
 const char* series_color(std::size_t series);
 /// gnuplot's point style of a series: "pt 7 ps 0.75 lc rgb …".
 std::string series_symbol(std::size_t series, double size);
+/// Its line style: "lw 1.5 dt 1 lc rgb …".
+std::string series_line(std::size_t series, double width);
 
 /// "Relative model error (lower is better)".
 std::string axis_title(const MetricEntry& metric);

@@ -130,7 +130,7 @@ CurveContents fill_curve(const FigureInput& input) {
           fmt::format("parameter = \"{}\": {} has no number of this name", curve.parameter, run.spec().method));
     }
   }
-  const std::vector<RunGroup> groups = labelled_groups(input, curve.parameter);
+  const std::vector<RunGroup> groups = labelled_groups(input, {curve.parameter});
   for (const RunGroup& group : groups) {
     if (!by_exemplar) {
       add_line(curve, group.title, group.runs);

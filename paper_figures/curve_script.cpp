@@ -81,7 +81,7 @@ std::string curve_plot(const CurveContents& curve) {
     const char* color = series_color(i);
     parts.push_back(fmt::format(
         "$line{} using 1:3:4 with filledcurves fc rgb \"{}\" fs transparent solid 0.15 noborder notitle", i, color));
-    parts.push_back(fmt::format("$line{} using 1:2 with lines lw 1.5 lc rgb \"{}\" notitle", i, color));
+    parts.push_back(fmt::format("$line{} using 1:2 with lines {} notitle", i, series_line(i, 1.5)));
     parts.push_back(
         fmt::format("$line{} using 1:2:5 with labels hypertext point {} notitle", i, series_symbol(i, 0.6)));
   }

@@ -60,7 +60,9 @@ std::string title_of(const Key& key, const std::set<std::string>& varying) {
 
 std::string detail_of(const PlannedRun& run) {
   std::string text = run.spec.method;
-  for (const auto& [name, value] : run.spec.params) text += fmt::format(", {} = {}", name, to_string(value));
+  for (const auto& [name, value] : run.spec.params) {
+    if (const std::string told = to_string(value); !told.empty()) text += fmt::format(", {} = {}", name, told);
+  }
   if (run.spec.size.area() > 0) text += ", " + format_size(run.spec.size.width, run.spec.size.height);
   if (!run.spec.periodic) text += ", not periodic";
   return text + fmt::format(", {} sample{}", run.spec.samples, run.spec.samples == 1 ? "" : "s");
@@ -116,12 +118,12 @@ std::vector<const SelectedRun*> RunGroup::on(std::string_view exemplar) const {
   return chosen;
 }
 
-std::vector<RunGroup> group_runs(const std::vector<SelectedRun>& runs, const std::string& swept) {
+std::vector<RunGroup> group_runs(const std::vector<SelectedRun>& runs, const std::vector<std::string>& swept) {
   std::vector<Key> keys;
   std::vector<RunGroup> groups;
   for (const SelectedRun& run : runs) {
     Key key{run.label, attributes_of(*run.planned)};
-    key.attributes.erase(swept);
+    for (const std::string& name : swept) key.attributes.erase(name);
     const auto known = std::find(keys.begin(), keys.end(), key);
     const auto index = static_cast<std::size_t>(known - keys.begin());
     if (known == keys.end()) {

@@ -28,9 +28,9 @@ struct RunGroup {
   std::vector<const SelectedRun*> on(std::string_view exemplar) const;
 };
 
-/// Groups in order of first appearance. They point into `runs`. Runs that differ in the parameter `swept`, too, belong
+/// Groups in order of first appearance. They point into `runs`. Runs that differ in the parameters `swept`, too, belong
 /// to one group.
-std::vector<RunGroup> group_runs(const std::vector<SelectedRun>& runs, const std::string& swept = "");
+std::vector<RunGroup> group_runs(const std::vector<SelectedRun>& runs, const std::vector<std::string>& swept = {});
 
 /// The metric of one record; no value when the run failed or the method has none.
 Average metric_of(const SelectedRun& run, std::string_view metric);

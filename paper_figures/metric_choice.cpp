@@ -55,7 +55,7 @@ std::string direction_of(const MetricEntry& metric) {
   return "";
 }
 
-std::vector<RunGroup> labelled_groups(const FigureInput& input, const std::string& swept) {
+std::vector<RunGroup> labelled_groups(const FigureInput& input, const std::vector<std::string>& swept) {
   std::vector<RunGroup> groups = group_runs(input.runs, swept);
   const auto labels = input.table.lists.find("labels");
   if (labels == input.table.lists.end()) return groups;

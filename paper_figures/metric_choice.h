@@ -23,7 +23,7 @@ std::string unit_of(const MetricEntry& metric);
 std::string direction_of(const MetricEntry& metric);
 
 /// group_runs with the names that the figure's `labels = [{run = …, label = …}]` gives to its runs.
-std::vector<RunGroup> labelled_groups(const FigureInput& input, const std::string& swept = "");
+std::vector<RunGroup> labelled_groups(const FigureInput& input, const std::vector<std::string>& swept = {});
 /// Throws ConfigError for a malformed `labels`.
 void check_labels(const FigureTable& table);
 

@@ -23,7 +23,9 @@ Json run_fact(const std::string& title, const std::string& value, const std::str
 
 std::string params_text(const RunSpec& spec) {
   std::vector<std::string> parts;
-  for (const auto& [name, value] : spec.params) parts.push_back(name + " = " + to_string(value));
+  for (const auto& [name, value] : spec.params) {
+    if (const std::string told = to_string(value); !told.empty()) parts.push_back(fmt::format("{} = {}", name, told));
+  }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 

@@ -56,6 +56,9 @@ void ModelOptions::add_domain_to(CLI::App& app) {
   app.add_option("--size", size, "Size of a sample as WIDTHxHEIGHT (the exemplar's own)");
   CLI::Option* torus = app.add_flag("--periodic", periodic, "Sample a torus (usual without --size)");
   app.add_flag("--no-periodic", no_periodic, "Sample a window of the plane (usual with --size)")->excludes(torus);
+  app.add_option("--step", step, "Distance of a sample's pixels in pixels of the exemplar, for noises of the plane")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
 }
 
 std::map<std::string, ParamValue> ModelOptions::given_params(std::span<const ParamSpec> specs) const {
@@ -69,20 +72,20 @@ std::map<std::string, ParamValue> ModelOptions::given_params(std::span<const Par
 
 Params ModelOptions::read_params(const MethodEntry& entry) const { return {entry.params, given_params(entry.params)}; }
 
-Extent ModelOptions::read_size() const { return size.empty() ? Extent{} : parse_size(size); }
-
-ExemplarInfo find_exemplar(const ExemplarCatalog& catalog, const std::string& name_or_file) {
-  const std::filesystem::path path = name_or_file;
-  const bool known = std::any_of(catalog.all().begin(), catalog.all().end(),
-                                 [&](const ExemplarInfo& info) { return info.name == name_or_file; });
-  if (known || (!path.has_extension() && !path.has_parent_path())) return catalog.find(name_or_file);
-  ExemplarInfo info;
-  info.name = path.stem().string();
-  info.available = true;
-  info.file = path;
-  info.source = "file";
-  return info;
+Domain ModelOptions::read_domain(const MethodEntry& entry, const Problem& problem, const Params& options) const {
+  const Extent asked = read_size();
+  Domain domain{.size = asked.area() > 0 ? asked : problem.exemplar.pixels.extent(),
+                .step = step,
+                .periodic = periodic || (size.empty() && !no_periodic)};
+  if (!periodic && domain.periodic && entry.refuses(problem, options, domain)) {
+    Domain window = domain;
+    window.periodic = false;
+    if (!entry.refuses(problem, options, window)) return window;
+  }
+  return domain;
 }
+
+Extent ModelOptions::read_size() const { return size.empty() ? Extent{} : parse_size(size); }
 
 std::filesystem::path find_config(const std::filesystem::path& home, const std::string& name_or_file) {
   if (std::filesystem::is_regular_file(name_or_file)) return name_or_file;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "experiments/cli/command.h"
@@ -21,6 +22,7 @@ namespace {
 struct FitOptions {
   ModelOptions model;
   std::filesystem::path output;
+  std::filesystem::path history;
   bool json = false;
 };
 
@@ -32,6 +34,17 @@ Image as_color(const Image& kernel) {
     for (int y = 0; y < kernel.height(); ++y) std::ranges::copy(kernel.row(0, y), color.row(c, y).begin());
   }
   return color;
+}
+
+/// The image with `frame` zeros on every side.
+Image framed(const Image& image, int frame) {
+  Image result({image.width() + 2 * frame, image.height() + 2 * frame}, image.channels());
+  for (int c = 0; c < image.channels(); ++c) {
+    for (int y = 0; y < image.height(); ++y) {
+      std::ranges::copy(image.row(c, y), result.row(c, y + frame).begin() + frame);
+    }
+  }
+  return result;
 }
 
 /// STEM.json, and STEM.texton and STEM.exr, or STEM_1.texton … where impacts choose among several kernels.
@@ -54,12 +67,37 @@ std::vector<std::filesystem::path> write_model(const ModelFile& model, const std
     }
     files.push_back(with_suffix(stem, number + ".exr"));
     write_image(color, files.back());
-    TextonFile texton{.order = 0, .coefficients = std::move(color), .source = source};
+    const int order = model.order.value_or(0);
+    TextonFile texton{.order = order, .coefficients = framed(color, (order + 1) / 2), .source = source};
     for (std::size_t c = 0; c < 3; ++c) texton.mean.at(c) = mean[mean.size() == 1 ? 0 : c];
     files.push_back(with_suffix(stem, number + ".texton"));
     write_texton_file(texton, files.back());
   }
   return files;
+}
+
+/// The fit's history: a header, and one line a step, numbered from 1.
+void write_history(const Convergence& convergence, const std::filesystem::path& file) {
+  std::string csv = fmt::format("{},rme\n", convergence.step);
+  for (std::size_t i = 0; i < convergence.rme.size(); ++i) csv += fmt::format("{},{}\n", i + 1, convergence.rme[i]);
+  write_atomically(file, csv);
+}
+
+nlohmann::ordered_json to_json(const Convergence* convergence) {
+  if (convergence == nullptr) return nullptr;
+  return {{"step", convergence->step},
+          {"steps", convergence->rme.size()},
+          {"rme", convergence->rme.back()},
+          {"reason", convergence->reason}};
+}
+
+/// The last steps, and why there was no other.
+void tell(const Convergence& convergence) {
+  const std::size_t count = convergence.rme.size();
+  for (std::size_t i = count - std::min<std::size_t>(3, count); i < count; ++i) {
+    fmt::print(stderr, "RME after {} {}: {:.6f}\n", convergence.step, i + 1, convergence.rme[i]);
+  }
+  fmt::print(stderr, "stopped by: {}\n", convergence.reason);
 }
 
 int fit(const FitOptions& options, const GlobalOptions& globals) {
@@ -71,10 +109,16 @@ int fit(const FitOptions& options, const GlobalOptions& globals) {
   const Exemplar exemplar = load_exemplar(find_exemplar(catalog, asked.exemplar));
   require_usable(exemplar);
   const std::unique_ptr<Model> model = method.analyze({exemplar}, params, analysis_seed(asked.seed));
-  const Texton* texton = model->texton();
+  const SplineTexton* spline = model->spline_texton();
+  const Texton* texton = spline != nullptr ? &spline->coefficients : model->texton();
   if (texton == nullptr) {
+    throw std::invalid_argument(fmt::format(
+        "{} has no texton to write: expected a spot noise or texton noise (textonbench list methods)", asked.method));
+  }
+  const Convergence* convergence = model->convergence();
+  if (!options.history.empty() && convergence == nullptr) {
     throw std::invalid_argument(
-        fmt::format("{} has no texton to write: expected a spot noise (textonbench list methods)", asked.method));
+        fmt::format("--history: {} fits without iterations; expected sot or optimal_texton", asked.method));
   }
   const Extent size = exemplar.pixels.extent();
   const std::vector<std::filesystem::path> files =
@@ -83,8 +127,11 @@ int fit(const FitOptions& options, const GlobalOptions& globals) {
                    .exemplar = exemplar.name,
                    .exemplar_sha256 = exemplar.sha256,
                    .seed = asked.seed,
-                   .texton = *texton},
+                   .texton = *texton,
+                   .order = spline != nullptr ? std::optional(spline->order) : std::nullopt,
+                   .support_area = spline != nullptr ? spline->support_area : 0},
                   options.output, fmt::format("{} {}x{}", exemplar.name, size.width, size.height));
+  if (!options.history.empty()) write_history(*convergence, options.history);
 
   const std::optional<double> error =
       find_metric("rme").of_model(*model, make_target(exemplar), Domain{.size = size, .periodic = true});
@@ -97,6 +144,7 @@ int fit(const FitOptions& options, const GlobalOptions& globals) {
                 {"size", {texton->extent().width, texton->extent().height}},
                 {"support_pixels", texton->support_pixels},
                 {"rme", error ? nlohmann::ordered_json(*error) : nullptr},
+                {"convergence", to_json(convergence)},
                 {"seed", asked.seed}});
     return 0;
   }
@@ -104,6 +152,7 @@ int fit(const FitOptions& options, const GlobalOptions& globals) {
              texton->kernels.size() == 1 ? "" : "s", texton->extent().width, texton->extent().height,
              texton->support_pixels, error ? fmt::format(", RME {:.4f}", *error) : "");
   if (!globals.quiet) {
+    if (convergence != nullptr) tell(*convergence);
     fmt::print(stderr, "next: textonbench synth --model {} -o sample.png\n", files.front().string());
   }
   return 0;
@@ -121,9 +170,13 @@ Command fit_command(CLI::App& app, const GlobalOptions& globals) {
                    "Files to write, without extension: .json (read by synth --model), and each kernel as .texton (the "
                    "text format of the authors of Texton Noise) and .exr")
       ->required();
+  fit_app->add_option("--history", options->history,
+                      "CSV file for the relative model error (RME) after each iteration of sot or evaluation of "
+                      "optimal_texton, before any correction of colors");
   fit_app->add_flag("--json", options->json, "Print one JSON document");
   set_examples(*fit_app,
                "  textonbench fit sot mamurk_e_1 -p support=31 -o texton\n"
+               "  textonbench fit sot mamurk_e_1 -p iterations=1000 -p tolerance=1e-4 --history history.csv -o texton\n"
                "  textonbench synth --model texton.json --size 1024x1024 -o sample.png");
   return {fit_app, [options, &globals] { return fit(*options, globals); }};
 }

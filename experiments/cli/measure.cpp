@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "experiments/cli/command.h"
@@ -20,15 +21,21 @@ struct MeasureOptions {
   bool json = false;
 };
 
-RunSpec make_spec(const MeasureOptions& options, const ExemplarInfo& exemplar) {
+RunSpec make_spec(const MeasureOptions& options, const ExemplarInfo& exemplar, const ExemplarCatalog& catalog) {
   const MethodEntry& method = find_method(options.model.method);
   RunSpec spec;
   spec.method = options.model.method;
-  spec.params = options.model.read_params(method).values();
+  const Params params = options.model.read_params(method);
+  spec.params = params.values();
+  spec.file_sha256 = hash_named(method, spec.params, catalog);
   spec.exemplar = options.model.exemplar;
   spec.exemplar_sha256 = exemplar_sha256(exemplar);
   spec.size = options.model.read_size();
-  spec.periodic = options.model.is_periodic();
+  const Exemplar pixels = load_exemplar(exemplar);
+  std::optional<Exemplar> second;
+  if (const auto named = second_exemplar(method, spec.params, catalog)) second = load_exemplar(*named);
+  spec.periodic = options.model.read_domain(method, {pixels, second ? &*second : nullptr}, params).periodic;
+  spec.step = options.model.step;
   spec.seed = options.model.seed;
   spec.samples = options.samples;
   spec.metrics = options.metrics;
@@ -63,8 +70,8 @@ int measure(const MeasureOptions& options, const GlobalOptions& globals) {
   const tbb::global_control threads = limit_threads(globals);
   const ExemplarCatalog catalog(home_folder());
   const ExemplarInfo exemplar = find_exemplar(catalog, options.model.exemplar);
-  const RunSpec spec = make_spec(options, exemplar);
-  const Record record = execute(spec, exemplar, nullptr);
+  const RunSpec spec = make_spec(options, exemplar, catalog);
+  const Record record = execute(spec, catalog, nullptr);
   if (record["status"] == "refused") {
     throw std::invalid_argument(fmt::format("{} cannot do this: {}", spec.method, record["reason"].get<std::string>()));
   }

@@ -1,16 +1,21 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "experiments/cli/command.h"
 #include "experiments/execute.h"
 #include "experiments/model_file.h"
+#include "experiments/progress.h"
 #include "experiments/provenance.h"
 #include "methods/base/image_io.h"
+#include "methods/base/image_io_tiled.h"
 #include "methods/spot/spot_noise.h"
+#include "methods/spot/texton_noise.h"
 
 namespace textonbench::cli {
 namespace {
@@ -33,7 +38,6 @@ struct Fitted {
 Fitted fit_to_exemplar(const ModelOptions& asked, bool quiet) {
   const MethodEntry& method = find_method(asked.method);
   const Params params = asked.read_params(method);
-  const Extent asked_size = asked.read_size();
   const ExemplarCatalog catalog(home_folder());
   std::vector<std::string> notes;
   const Exemplar exemplar = load_exemplar(find_exemplar(catalog, asked.exemplar), &notes);
@@ -41,9 +45,10 @@ Fitted fit_to_exemplar(const ModelOptions& asked, bool quiet) {
     for (const std::string& note : notes) fmt::print(stderr, "{}: {}\n", exemplar.name, note);
   }
   require_usable(exemplar);
-  const Domain domain{.size = asked_size.area() > 0 ? asked_size : exemplar.pixels.extent(),
-                      .periodic = asked.is_periodic()};
-  const Problem problem{exemplar};
+  std::optional<Exemplar> second;
+  if (const auto named = second_exemplar(method, params.values(), catalog)) second = load_exemplar(*named);
+  const Problem problem{exemplar, second ? &*second : nullptr};
+  const Domain domain = asked.read_domain(method, problem, params);
   if (const std::optional<std::string> reason = method.refuses(problem, params, domain)) {
     throw std::invalid_argument(fmt::format("{} cannot do this: {}", asked.method, *reason));
   }
@@ -52,26 +57,56 @@ Fitted fit_to_exemplar(const ModelOptions& asked, bool quiet) {
   return {std::move(model), domain, std::chrono::duration<double>(Clock::now() - start).count()};
 }
 
-/// The noise of a texton that was fitted before, with the parameters that it was fitted with where none are given.
-Fitted read_fitted(const SynthOptions& options) {
-  const ModelOptions& asked = options.model;
-  const Clock::time_point start = Clock::now();
-  const bool is_text = options.model_file.extension() == ".texton";
-  ModelFile file = is_text ? read_texton_as_model(options.model_file) : read_model_file(options.model_file);
-  const std::vector<ParamSpec> specs = spot_noise_params("poisson");
+/// The parameters of the noise: given on the command line, or else those that the file was fitted with, or else
+/// defaults.
+Params noise_params(const std::vector<ParamSpec>& specs, const ModelFile& file, const ModelOptions& asked) {
   std::map<std::string, ParamValue> given;
   for (const ParamSpec& spec : specs) {
     if (const auto kept = file.params.find(std::string(spec.name)); kept != file.params.end()) given.insert(*kept);
   }
   for (auto& [name, value] : asked.given_params(specs)) given.insert_or_assign(name, value);
-  const SpotNoiseOptions noise = spot_noise_options(Params(specs, given), file.texton.support_pixels);
+  return {specs, given};
+}
+
+/// The noise of a texton that was fitted before.
+Fitted read_fitted(const SynthOptions& options) {
+  const ModelOptions& asked = options.model;
+  const Clock::time_point start = Clock::now();
+  const bool is_text = options.model_file.extension() == ".texton";
+  const ModelFile file = is_text ? read_texton_as_model(options.model_file) : read_model_file(options.model_file);
   const Extent asked_size = asked.read_size();
-  const Domain domain{.size = asked_size.area() > 0 ? asked_size : Extent{512, 512}, .periodic = asked.periodic};
-  if (const std::optional<std::string> reason = refuse_spot_noise(file.texton.extent(), domain)) {
+  const Domain domain{
+      .size = asked_size.area() > 0 ? asked_size : Extent{512, 512}, .step = asked.step, .periodic = asked.periodic};
+  if (const std::optional<std::string> reason =
+          file.order ? refuse_spline_noise(domain) : refuse_spot_noise(file.texton.extent(), domain)) {
     throw std::invalid_argument(fmt::format("{} cannot do this: {}", options.model_file.string(), *reason));
   }
-  std::unique_ptr<Model> model = make_spot_noise(std::move(file.texton), noise);
+  const std::vector<ParamSpec> specs = file.order ? spline_noise_params() : spot_noise_params("poisson");
+  const Params params = noise_params(specs, file, asked);
+  std::unique_ptr<Model> model =
+      file.order ? make_spline_noise(file.spline_texton(), spline_noise_options(params))
+                 : make_spot_noise(file.texton, spot_noise_options(params, file.texton.support_pixels));
   return {std::move(model), domain, std::chrono::duration<double>(Clock::now() - start).count()};
+}
+
+/// Windows above this are drawn and written band by band, so that the memory they take does not grow with their height.
+constexpr std::int64_t most_pixels_at_once = std::int64_t{1} << 24;
+
+void draw_bands(const Model& model, const Domain& domain, Seed seed, const std::filesystem::path& output, bool quiet) {
+  std::optional<TiledImageWriter> writer;
+  Domain window = domain;
+  const int bands = (domain.size.height + TiledImageWriter::tile - 1) / TiledImageWriter::tile;
+  Progress progress(static_cast<std::size_t>(bands), "bands", !quiet, {});
+  for (int band = 0; band < bands; ++band) {
+    const int top = band * TiledImageWriter::tile;
+    window.origin.y = domain.origin.y + top * domain.step;
+    window.size.height = std::min(TiledImageWriter::tile, domain.size.height - top);
+    const Image image = model.synthesize(window, seed);
+    if (!writer) writer.emplace(output, domain.size, image.channels());
+    writer->write_band(image);
+    progress.advance("");
+  }
+  writer->finish();
 }
 
 int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
@@ -84,16 +119,24 @@ int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
   const auto [model, domain, analyze_seconds] =
       from_file ? read_fitted(options) : fit_to_exemplar(asked, globals.quiet);
   const Clock::time_point start = Clock::now();
-  const Image sample = model->synthesize(domain, sample_seed(asked.seed, 0));
-  const double synthesize_seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  write_image(sample, options.output);
+  const Seed seed = sample_seed(asked.seed, 0);
+  double synthesize_seconds = 0;
+  if (domain.size.area() > most_pixels_at_once && !domain.periodic && options.output.extension() == ".exr") {
+    draw_bands(*model, domain, seed, options.output, globals.quiet);
+    synthesize_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  } else {
+    const Image sample = model->synthesize(domain, seed);
+    synthesize_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    write_image(sample, options.output);
+  }
 
   if (options.json) {
     print_json({{"output", options.output.string()},
                 {"seconds", {{"analyze", analyze_seconds}, {"synthesize", synthesize_seconds}}},
                 {"seed", asked.seed},
                 {"size", {domain.size.width, domain.size.height}},
-                {"periodic", domain.periodic}});
+                {"periodic", domain.periodic},
+                {"step", domain.step}});
     return 0;
   }
   fmt::print("{}: {}x{} {}, seed {} (analysis {:.1f} ms, synthesis {:.1f} ms)\n", options.output.string(),
@@ -115,9 +158,13 @@ Command synth_command(CLI::App& app, const GlobalOptions& globals) {
   options->model.add_domain_to(*synth);
   synth->add_option(
       "--model", options->model_file,
-      "Instead of METHOD EXEMPLAR: a model that textonbench fit wrote (.json), or a .texton of order 0; -p "
-      "then takes impacts, mni, intensity and route, and a sample has 512x512 pixels without --size");
-  synth->add_option("-o,--output", options->output, "Picture to write: .png (8 bit, clamped) or .exr (float)")
+      "Instead of METHOD EXEMPLAR: a model that textonbench fit wrote (.json), or a .texton; -p then takes "
+      "impacts, mni and route, and intensity, or cell for B-splines, and a sample has 512x512 pixels without --size");
+  synth
+      ->add_option(
+          "-o,--output", options->output,
+          "Picture to write: .png (8 bit, clamped) or .exr (float); .exr of a window above 4096x4096 is drawn and "
+          "written in tiles, in little memory")
       ->required();
   synth->add_flag("--json", options->json, "Print one JSON document");
   set_examples(*synth,

@@ -55,6 +55,9 @@ struct MetricEntry {
   std::optional<double> (*of_model)(const Model&, const Target&, const Domain&) = nullptr;
   /// Of a sample-level metric. `seed` fixes what the metric draws itself (projections, points).
   std::unique_ptr<SampleMetric> (*of_samples)(const Target&, const Domain&, Seed seed) = nullptr;
+  /// Of a sample-level metric that holds samples against the model's own Gaussian limit and not against the exemplar's
+  /// law: null when the model has none. Its floor is that of samples of the limit.
+  std::unique_ptr<SampleMetric> (*of_limit)(const Model&, const Domain&, Seed seed) = nullptr;
   /// Tests a statement of theory rather than how good a method is: measured when asked for by name or as "@identity".
   bool identity = false;
 };

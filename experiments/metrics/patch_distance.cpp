@@ -24,6 +24,7 @@ constexpr int scales = 3;
 constexpr std::array<int, 2> sides{3, 8};
 constexpr int projections = 512;
 constexpr int most_patches = 10000;
+constexpr int longest_lag = sides.back() * (1 << (scales - 1)) - 1;
 
 /// Averages of 2 x 2 pixels; an odd last row or column is dropped.
 Image halved(const Image& u) {
@@ -195,13 +196,13 @@ class PatchLaw {
 
 class PatchDistance : public SampleMetric {
  public:
-  PatchDistance(const Target& target, const Domain& domain, Seed seed) : mean_(target.gaussian.mean) {
+  /// `law` is that of the samples' values less `mean`, up to longest_lag.
+  PatchDistance(std::vector<double> mean, const LagWindow& law, const Domain& domain, Seed seed)
+      : mean_(std::move(mean)) {
     if (!PatchLaw::fits(domain.size, sides.front())) {
       throw std::invalid_argument(fmt::format("samples of {}x{} pixels: expected at least {}x{} for patches",
                                               domain.size.width, domain.size.height, sides.front(), sides.front()));
     }
-    constexpr int longest_lag = sides.back() * (1 << (scales - 1)) - 1;
-    const LagWindow law(target, domain, {longest_lag, longest_lag});
     constexpr int pairs = scales * static_cast<int>(sides.size());
     Extent image = domain.size;
     int pair = 0;
@@ -242,7 +243,15 @@ class PatchDistance : public SampleMetric {
 }  // namespace
 
 std::unique_ptr<SampleMetric> patch_distance(const Target& target, const Domain& domain, Seed seed) {
-  return std::make_unique<PatchDistance>(target, domain, seed);
+  return std::make_unique<PatchDistance>(target.gaussian.mean, LagWindow(target, domain, {longest_lag, longest_lag}),
+                                         domain, seed);
+}
+
+std::unique_ptr<SampleMetric> limit_patch_distance(const Model& model, const Domain& domain, Seed seed) {
+  const Gaussian* limit = model.gaussian();
+  if (model.texton() == nullptr || limit == nullptr) return nullptr;
+  return std::make_unique<PatchDistance>(
+      limit->mean(), LagWindow(*limit, model.texton()->extent(), domain, {longest_lag, longest_lag}), domain, seed);
 }
 
 }  // namespace textonbench

@@ -26,4 +26,8 @@ namespace textonbench {
 /// samples smaller than 3 x 3.
 std::unique_ptr<SampleMetric> patch_distance(const Target& target, const Domain& domain, Seed seed);
 
+/// The same to the Gaussian law with the mean and covariance of the model itself, so that it tells the number of
+/// impacts apart from the error of the texton. Null for a model that sums no texton.
+std::unique_ptr<SampleMetric> limit_patch_distance(const Model& model, const Domain& domain, Seed seed);
+
 }  // namespace textonbench

@@ -16,6 +16,12 @@ CrossSpectrum law_spectrum(const Target& target, Extent grid) {
   return spectrum;
 }
 
+/// The torus, or a grid on which lags up to `reach` of a covariance that ends at `extent` do not wrap round.
+Extent grid_of(const Domain& domain, Extent extent, Extent reach) {
+  if (domain.periodic) return domain.size;
+  return {good_fft_size(extent.width + reach.width), good_fft_size(extent.height + reach.height)};
+}
+
 }  // namespace
 
 Spectrum spot_spectrum(const Target& target, Extent grid) {
@@ -39,17 +45,24 @@ LagWindow::LagWindow(const Target& target, const Domain& domain, Extent reach)
   Autocovariance elsewhere;
   const bool own = on_own_torus(target, domain);
   if (!own) {
-    const Extent exemplar = target.covariance.grid;
-    const Extent apart{good_fft_size(exemplar.width + reach.width), good_fft_size(exemplar.height + reach.height)};
-    elsewhere = autocovariance(law_spectrum(target, domain.periodic ? domain.size : apart));
+    elsewhere = autocovariance(law_spectrum(target, grid_of(domain, target.covariance.grid, reach)));
   }
-  const Autocovariance& covariance = own ? target.covariance : elsewhere;
-  values_.reserve(static_cast<std::size_t>(channels_ * channels_) * static_cast<std::size_t>(2 * reach.width + 1) *
-                  static_cast<std::size_t>(2 * reach.height + 1));
+  read(own ? target.covariance : elsewhere);
+}
+
+LagWindow::LagWindow(const Gaussian& law, Extent extent, const Domain& domain, Extent reach)
+    : channels_(static_cast<int>(law.mean().size())), reach_(reach) {
+  require_unit_step(domain);
+  read(autocovariance(law.spectrum(grid_of(domain, extent, reach))));
+}
+
+void LagWindow::read(const Autocovariance& covariance) {
+  values_.reserve(static_cast<std::size_t>(channels_ * channels_) * static_cast<std::size_t>(2 * reach_.width + 1) *
+                  static_cast<std::size_t>(2 * reach_.height + 1));
   for (int c = 0; c < channels_; ++c) {
     for (int d = 0; d < channels_; ++d) {
-      for (int y = -reach.height; y <= reach.height; ++y) {
-        for (int x = -reach.width; x <= reach.width; ++x) values_.push_back(covariance.at(c, d, x, y));
+      for (int y = -reach_.height; y <= reach_.height; ++y) {
+        for (int x = -reach_.width; x <= reach_.width; ++x) values_.push_back(covariance.at(c, d, x, y));
       }
     }
   }

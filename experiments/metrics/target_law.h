@@ -26,6 +26,8 @@ class LagWindow {
  public:
   /// Throws as require_unit_step does.
   LagWindow(const Target& target, const Domain& domain, Extent reach);
+  /// Of the law of a model, whose covariance on the plane is zero from lag `extent` on. Throws as require_unit_step.
+  LagWindow(const Gaussian& law, Extent extent, const Domain& domain, Extent reach);
 
   int channels() const { return channels_; }
   Extent reach() const { return reach_; }
@@ -36,6 +38,8 @@ class LagWindow {
   }
 
  private:
+  void read(const Autocovariance& covariance);
+
   int channels_;
   Extent reach_;
   std::vector<double> values_;

@@ -17,10 +17,10 @@ double synthesis_seconds(const Model& model, const Domain& domain, Seed seed) {
 
 std::optional<double> distant_window_ratio(const Model& model, const Target&, const Domain&) {
   if (model.texton() == nullptr) return std::nullopt;
-  constexpr Extent window{64, 64};
+  constexpr Extent size{64, 64};
   constexpr double middle = 16384.0 / 2 - 32;
   constexpr std::size_t repetitions = 101;
-  const Domain corner{.size = window}, distant{.size = window, .origin = {middle, middle}};
+  const Domain corner{.size = size}, distant{.size = size, .origin = {middle, middle}};
   std::array<double, repetitions> near_seconds{}, far_seconds{};
   for (std::size_t i = 0; i < repetitions; ++i) {
     near_seconds[i] = synthesis_seconds(model, corner, Seed{i});

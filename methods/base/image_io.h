@@ -1,4 +1,4 @@
-// Reading and writing pictures. The only file pair that includes OpenImageIO.
+// Reading and writing pictures. Only this and image_io_tiled.h stand on OpenImageIO.
 #pragma once
 
 #include <filesystem>

@@ -22,7 +22,8 @@ std::string to_string(const ParamValue& value);
 struct ParamSpec {
   std::string_view name;
   ParamValue default_value;
-  std::string_view unit;  ///< "pixel", "1/pixel", … ; empty when it has none
+  std::string_view unit;  ///< "pixel", "1/pixel", … ; empty when it has none; "file": a path,
+                          ///< whose content counts; "exemplar": the name of one, or the path of a picture
   std::string_view help;
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();

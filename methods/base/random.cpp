@@ -13,18 +13,9 @@ namespace {
 
 __extension__ using Wide = unsigned __int128;
 
-std::array<std::uint32_t, 4> philox(std::uint64_t key, std::uint64_t high, std::uint64_t low) {
-  const r123::Philox4x32::ctr_type counter = {{static_cast<std::uint32_t>(low), static_cast<std::uint32_t>(low >> 32U),
-                                               static_cast<std::uint32_t>(high),
-                                               static_cast<std::uint32_t>(high >> 32U)}};
-  const r123::Philox4x32::key_type k = {{static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32U)}};
-  const auto words = r123::Philox4x32{}(counter, k);
-  return {words[0], words[1], words[2], words[3]};
-}
-
 // Keys of children come from the parent's key under a mask, so that they are not among the parent's own words.
 std::uint64_t child_key(std::uint64_t key, std::uint64_t kind, std::uint64_t value) {
-  const auto words = philox(key ^ 0x7465787475726573ULL, kind, value);
+  const auto words = philox_block(key ^ 0x7465787475726573ULL, kind, value);
   return (std::uint64_t{words[1]} << 32U) | words[0];
 }
 
@@ -78,6 +69,15 @@ double log_poisson(double k, double mean) {
 
 }  // namespace
 
+std::array<std::uint32_t, 4> philox_block(std::uint64_t key, std::uint64_t row, std::uint64_t index) {
+  const r123::Philox4x32::ctr_type counter = {
+      {static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(index >> 32U), static_cast<std::uint32_t>(row),
+       static_cast<std::uint32_t>(row >> 32U)}};
+  const r123::Philox4x32::key_type k = {{static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32U)}};
+  const auto words = r123::Philox4x32{}(counter, k);
+  return {words[0], words[1], words[2], words[3]};
+}
+
 Stream::Stream(Seed seed) : key_(child_key(seed.value, 0, 0)) {}
 
 Stream Stream::child(std::string_view name) const { return Stream(child_key(key_, 1, hash(name))); }
@@ -85,7 +85,7 @@ Stream Stream::child(std::string_view name) const { return Stream(child_key(key_
 Stream Stream::child(std::uint64_t index) const { return Stream(child_key(key_, 2, index)); }
 
 std::array<std::uint32_t, 4> Stream::block(std::uint64_t row, std::uint64_t index) const {
-  return philox(key_, row, index);
+  return philox_block(key_, row, index);
 }
 
 Seed derive(Seed seed, std::string_view name) { return Seed{child_key(seed.value, 3, hash(name))}; }

@@ -23,6 +23,9 @@ struct Seed {
   friend bool operator==(const Seed&, const Seed&) = default;
 };
 
+/// Philox4x32-10 of a 64-bit key and the counter (index, row), low words first.
+std::array<std::uint32_t, 4> philox_block(std::uint64_t key, std::uint64_t row, std::uint64_t index);
+
 /// A family of 2^64 rows of 2^66 32-bit words, addressed by (row, index).
 class Stream {
  public:

@@ -20,4 +20,12 @@ struct Texton {
   int channels() const { return kernels.front().channels(); }
 };
 
+/// Kernels of the plane: h_k(y) = Σ_j α_k(j) β^n(y1 − j1) β^n(y2 − j2) with the coefficients α_k(j) on a raster whose
+/// pixel (0, 0) is j = (0, 0). An impact at x adds h_k(y − x). MNI = intensity · support_area.
+struct SplineTexton {
+  Texton coefficients;      ///< without a frame of zeros
+  int order = 1;            ///< n, 0 to 5 (bspline.h)
+  double support_area = 0;  ///< where a kernel may be other than zero, pixels²; (W + n)(H + n) for a rectangle
+};
+
 }  // namespace textonbench

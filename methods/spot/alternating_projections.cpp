@@ -12,6 +12,7 @@
 
 #include "methods/base/box_fft.h"
 #include "methods/base/parallel.h"
+#include "methods/spot/spline_spectrum.h"
 
 namespace textonbench {
 namespace {
@@ -30,11 +31,13 @@ inline __attribute__((always_inline)) void load(const float* from, Parts& re, Pa
   im = __builtin_shufflevector(bins, bins, 1, 3, 5, 7, 9, 11, 13, 15);
 }
 
-/// Replaces the bins F of a block of columns by T s, and adds Σ |F − T s|² to the sum of each column. With the square
-/// of no difference of large numbers the sums are accurate however close the two are.
+/// Replaces the bins F of a block of columns by T s, and adds Σ_ky weights[ky] |F − T s|² to the sum of each column.
+/// With the square of no difference of large numbers the sums are accurate however close the two are.
 template <std::size_t channels>
-inline __attribute__((always_inline)) void project_bins(const std::array<const float*, channels>& spot, int rows,
+inline __attribute__((always_inline)) void project_bins(const std::array<const float*, channels>& spot,
+                                                        const std::vector<float>& weights,
                                                         const std::array<float*, channels>& texton, ColumnSums& sums) {
+  const int rows = static_cast<int>(weights.size());
   constexpr float smallest = 1e-36F;  // squares below are not normal numbers
   for (int ky = 0; ky < rows; ++ky) {
     const std::ptrdiff_t k = std::ptrdiff_t{ky} * 2 * width;
@@ -67,34 +70,41 @@ inline __attribute__((always_inline)) void project_bins(const std::array<const f
       const Bins bins = __builtin_shufflevector(new_re, new_im, 0, 8, 1, 9, 2, 10, 3, 11, 4, 12, 5, 13, 6, 14, 7, 15);
       std::memcpy(texton[c] + k, &bins, sizeof(bins));
     }
+    distance *= weights[static_cast<std::size_t>(ky)];
     for (int i = 0; i < width; ++i) {
       sums[static_cast<std::size_t>(i)] += static_cast<double>(distance[i]);
     }
   }
 }
 
-__attribute__((target_clones("default", "avx2", "avx512f"))) void project_gray(const float* spot, int rows,
+__attribute__((target_clones("default", "avx2", "avx512f"))) void project_gray(const float* spot,
+                                                                               const std::vector<float>& weights,
                                                                                float* texton, ColumnSums& sums) {
-  project_bins<1>({spot}, rows, {texton}, sums);
+  project_bins<1>({spot}, weights, {texton}, sums);
 }
 
 __attribute__((target_clones("default", "avx2", "avx512f"))) void project_color(const std::array<const float*, 3>& spot,
-                                                                                int rows,
+                                                                                const std::vector<float>& weights,
                                                                                 const std::array<float*, 3>& texton,
                                                                                 ColumnSums& sums) {
-  project_bins<3>(spot, rows, texton, sums);
+  project_bins<3>(spot, weights, texton, sums);
 }
 
-/// The projection of spectra onto those of modulus T, block of columns by block.
+/// The projection of spectra onto those of modulus T = T_u / b̂^{1/2}, block of columns by block.
 class Projection {
  public:
-  explicit Projection(const Spectrum& spot)
-      : layout_(spot), sums_(static_cast<std::size_t>(spot.columns() / width + 1)) {
+  Projection(const Spectrum& spot, int order)
+      : layout_(spot), gain_(order, spot.raster()), sums_(static_cast<std::size_t>(spot.columns() / width + 1)) {
+    row_weights_.reserve(static_cast<std::size_t>(spot.rows()));
+    for (int ky = 0; ky < spot.rows(); ++ky) {
+      row_weights_.push_back(static_cast<float>(gain_.row(ky) * gain_.row(ky)));
+    }
     blocks_.reserve(sums_.size());
     for (int first = 0; first < spot.columns(); first += width) {
       blocks_.emplace_back(spot.rows(), spot.channels());
       for (int c = 0; c < spot.channels(); ++c) {
         copy_columns(spot, c, first, blocks_.back());
+        divide_by_gain(first, blocks_.back().bins(c));
       }
     }
     for (int c = 0; c < spot.channels(); ++c) {
@@ -115,28 +125,39 @@ class Projection {
     const auto out = [&](int c) { return reinterpret_cast<float*>(block.bins(c)); };
     ColumnSums sums{};
     if (layout_.channels() == 1) {
-      project_gray(in(0), layout_.rows(), out(0), sums);
+      project_gray(in(0), row_weights_, out(0), sums);
     } else {
-      project_color({in(0), in(1), in(2)}, layout_.rows(), {out(0), out(1), out(2)}, sums);
+      project_color({in(0), in(1), in(2)}, row_weights_, {out(0), out(1), out(2)}, sums);
     }
     sums_[number] = sums;
   }
 
-  /// RME of the spectrum that was projected last: its distance to its projection is that of the two models, since the
-  /// projection has modulus T and the phases that fit best.
+  /// RME of the spectrum that was projected last: its distance to its projection, weighted by b̂, is that of the two
+  /// models, since the projection has modulus T and the phases that fit best.
   double relative_error() const {
     double sum = 0;
     for (int kx = 0; kx < layout_.columns(); ++kx) {
-      sum +=
-          layout_.multiplicity(kx) * sums_[static_cast<std::size_t>(kx / width)][static_cast<std::size_t>(kx % width)];
+      sum += layout_.multiplicity(kx) * gain_.column(kx) * gain_.column(kx) *
+             sums_[static_cast<std::size_t>(kx / width)][static_cast<std::size_t>(kx % width)];
     }
     return std::sqrt(sum / energy_);
   }
 
  private:
+  void divide_by_gain(int first, std::complex<float>* bins) const {
+    const int columns = std::min(width, layout_.columns() - first);
+    for (int ky = 0; ky < layout_.rows(); ++ky) {
+      for (int i = 0; i < columns; ++i) {
+        bins[std::ptrdiff_t{ky} * width + i] /= static_cast<float>(gain_.column(first + i) * gain_.row(ky));
+      }
+    }
+  }
+
   const Spectrum& layout_;
-  std::vector<BinBlock> blocks_;
-  std::vector<ColumnSums> sums_;  ///< squared distance of each column of each block
+  SplineGain gain_;
+  std::vector<float> row_weights_;  ///< b̂1 of every row
+  std::vector<BinBlock> blocks_;    ///< T
+  std::vector<ColumnSums> sums_;    ///< squared distance of each column of each block, weighted by rows only
   double energy_ = 0;
 };
 
@@ -198,7 +219,7 @@ ProjectedTexton alternate_projections(const GaussianModel& model, const Support&
   require_projectable(model, support, start, options);
   const Spectrum& spot = model.spectrum.factors.front();
   const std::vector<float> weights = support_weights(support, spot.raster());
-  Projection projection(spot);
+  Projection projection(spot, options.order);
 
   const BlockMap project = std::ref(projection);
 

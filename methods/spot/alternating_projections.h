@@ -7,6 +7,9 @@
 //
 // with T the spectrum of the exemplar's normalised spot, T(0) = 0, and T* t̂ = Σ_c conj(T_c) t̂_c: one phase a
 // frequency for all channels, so that the exemplar's phases between channels are kept.
+//
+// For the coefficients of a B-spline texton (CGF 2017, section 4.1) T is T_u / b̂^{1/2}, T_u being the exemplar's: then
+// |α̂|² b̂ is |T_u|² where α̂ = T s (spline_spectrum.h). At order 0 b̂ = 1 and the two are one algorithm.
 #pragma once
 
 #include <vector>
@@ -21,17 +24,20 @@ namespace textonbench {
 struct ProjectionOptions {
   int iterations = 50;   ///< at most so many, at least 1
   double tolerance = 0;  ///< stop once an iteration lowers the RME by no more than this part of it; 0: never
+  int order = 0;         ///< of the B-spline that the coefficients belong to, 0 to max_bspline_order
 };
 
 struct ProjectionSummary {
   enum class Stop { iterations, tolerance };
-  int iterations = 0;       ///< iterations made
-  std::vector<double> rme;  ///< relative model error after each of them; it never rises but by rounding (1e-6)
+  int iterations = 0;  ///< iterations made
+  /// Relative model error of the noise, ‖|α̂| b̂^{1/2} − |T_u|‖ / ‖T_u‖, after each of them. At order 0 it never rises
+  /// but by rounding (1e-6); above, what never rises is the distance of |α̂| to |T_u| / b̂^{1/2}.
+  std::vector<double> rme;
   Stop stop = Stop::iterations;
 };
 
 struct ProjectedTexton {
-  Texton texton;  ///< one kernel of the size of S' box
+  Texton texton;  ///< one kernel, or its coefficients, of the size of S' box
   ProjectionSummary summary;
 };
 
@@ -40,7 +46,7 @@ struct ProjectedTexton {
 /// gives the RME of the iteration before; only the last one costs a transform of its own. The same start gives the same
 /// bits, whatever the number of threads; rounding errors grow to 2e-4 of the largest coefficient in 50 iterations.
 /// Throws std::invalid_argument unless the model has one factor of 1 or 3 channels, the start has its size, S fits into
-/// it, iterations >= 1 and 0 <= tolerance < 1.
+/// it, iterations >= 1, 0 <= tolerance < 1 and the order exists.
 ProjectedTexton alternate_projections(const GaussianModel& model, const Support& support, const Spectrum& start,
                                       const ProjectionOptions& options);
 

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <stdexcept>
 
+#include "methods/spot/spline_spectrum.h"
 #include "methods/spot/texton_error.h"
 
 namespace textonbench {
@@ -45,6 +46,15 @@ ColorCorrection color_correction_of(const Params& params) {
                              : ColorCorrection::transport;
 }
 
+ParamSpec constrainable_color_correction_param() {
+  ParamSpec spec = color_correction_param();
+  spec.choices.emplace_back("constrained");
+  spec.help =
+      "give the noise the exemplar's color covariance: by the authors' map or the one that moves colors least "
+      "(transport), afterwards, or while the error is minimized (constrained)";
+  return spec;
+}
+
 Eigen::MatrixXd color_map(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, ColorCorrection correction) {
   if (a.rows() != a.cols() || a.rows() != b.rows() || b.rows() != b.cols()) {
     throw std::invalid_argument(fmt::format("color covariances of {}x{} and {}x{}: expected square ones of one size",
@@ -65,27 +75,28 @@ Eigen::MatrixXd color_map(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, Co
   throw std::invalid_argument("unknown color correction");
 }
 
-Eigen::MatrixXd color_covariance(const Texton& texton) {
+Eigen::MatrixXd color_covariance(const Texton& texton, int order) {
   const int channels = texton.channels();
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(channels, channels);
   for (const Image& kernel : texton.kernels) {
+    const Image overlap = spline_overlap(kernel, order);
     for (int c = 0; c < channels; ++c) {
       for (int d = 0; d < channels; ++d) {
         for (int y = 0; y < kernel.height(); ++y) {
           for (int x = 0; x < kernel.width(); ++x) {
-            covariance(c, d) += static_cast<double>(kernel.at(c, x, y)) * static_cast<double>(kernel.at(d, x, y));
+            covariance(c, d) += static_cast<double>(kernel.at(c, x, y)) * static_cast<double>(overlap.at(d, x, y));
           }
         }
       }
     }
   }
-  return covariance;
+  return (covariance + covariance.transpose()) / 2;
 }
 
-CorrectedTexton correct_colors(Texton texton, const CrossSpectrum& target, ColorCorrection correction) {
+CorrectedTexton correct_colors(Texton texton, const CrossSpectrum& target, ColorCorrection correction, int order) {
   CorrectedTexton result;
-  result.map = color_map(color_covariance(texton), color_covariance(target), correction);
-  result.rme_before = relative_model_error(texton, target);
+  result.map = color_map(color_covariance(texton, order), color_covariance(target), correction);
+  result.rme_before = relative_model_error(texton, target, order);
   const int channels = texton.channels();
   for (Image& kernel : texton.kernels) {
     Eigen::VectorXd color(channels);
@@ -102,7 +113,7 @@ CorrectedTexton correct_colors(Texton texton, const CrossSpectrum& target, Color
     }
   }
   result.texton = std::move(texton);
-  result.rme_after = relative_model_error(result.texton, target);
+  result.rme_after = relative_model_error(result.texton, target, order);
   return result;
 }
 

@@ -12,6 +12,7 @@
 #include "methods/exemplar_spot.h"
 #include "methods/spot/color_correction.h"
 #include "methods/spot/lbfgs.h"
+#include "methods/spot/spline_spectrum.h"
 #include "methods/spot/spot_noise.h"
 #include "methods/spot/support.h"
 #include "methods/spot/texton_mix.h"
@@ -19,48 +20,58 @@
 namespace textonbench {
 namespace {
 
-TransportObjective objective_of(const GaussianModel& model, const Image& mask) {
+TransportObjective objective_of(const GaussianModel& model, const Image& mask, int order) {
   if (model.spectrum.factors.size() != 1) {
     throw std::invalid_argument(
         fmt::format("optimal textons of a Gaussian model of rank {}: expected rank 1", model.spectrum.factors.size()));
   }
-  return {model.spectrum.factors.front(), mask};
+  return TransportObjective(model.spectrum.factors.front(), mask, order);
 }
 
-/// (A − B) / tr B, A = Σ_k Σ_x h_k h_kᵀ the color covariance of kernels laid out as for TransportObjective::evaluate.
+/// (A − B) / tr B, A the color covariance of kernels, or of coefficients of that order, laid out as for
+/// TransportObjective::evaluate.
 class ColorResidual {
  public:
-  ColorResidual(const GaussianModel& model, const SupportPlane& support)
-      : channels_(support.channels()),
-        pixels_(support.pixels()),
-        wanted_(color_covariance(model.spectrum)),
-        scale_(wanted_.trace()) {}
+  ColorResidual(const GaussianModel& model, const SupportPlane& support, int order)
+      : support_(support), order_(order), wanted_(color_covariance(model.spectrum)), scale_(wanted_.trace()) {}
 
   Eigen::MatrixXd operator()(std::span<const double> kernels) const {
     Eigen::MatrixXd sum = -wanted_;
-    for_each_kernel(kernels, [&](std::size_t first) {
-      const Eigen::Map<const Eigen::MatrixXd> h(kernels.data() + first, pixels_, channels_);
-      sum += h.transpose() * h;
-    });
-    return sum / scale_;
+    for (std::size_t first = 0; first < kernels.size(); first += support_.size()) {
+      const std::span<const double> kernel = kernels.subspan(first, support_.size());
+      sum += as_columns(kernel).transpose() * as_columns(overlap(kernel));
+    }
+    return (sum + sum.transpose()) / (2 * scale_);
   }
 
   /// Adds the gradient of ⟨weights, residual⟩, for symmetric weights.
   void add_gradient(std::span<const double> kernels, const Eigen::MatrixXd& weights, std::span<double> gradient) const {
-    for_each_kernel(kernels, [&](std::size_t first) {
-      const Eigen::Map<const Eigen::MatrixXd> h(kernels.data() + first, pixels_, channels_);
-      Eigen::Map<Eigen::MatrixXd>(gradient.data() + first, pixels_, channels_) += 2 / scale_ * (h * weights);
-    });
+    for (std::size_t first = 0; first < kernels.size(); first += support_.size()) {
+      Eigen::Map<Eigen::MatrixXd>(gradient.data() + first, support_.pixels(), support_.channels()) +=
+          2 / scale_ * (as_columns(overlap(kernels.subspan(first, support_.size()))) * weights);
+    }
   }
 
  private:
-  template <class Body>
-  void for_each_kernel(std::span<const double> kernels, const Body& body) const {
-    const auto size = static_cast<std::size_t>(channels_ * pixels_);
-    for (std::size_t first = 0; first < kernels.size(); first += size) body(first);
+  using Columns = Eigen::Map<const Eigen::MatrixXd>;
+
+  Columns as_columns(std::span<const double> kernel) const {
+    return {kernel.data(), support_.pixels(), support_.channels()};
   }
 
-  Eigen::Index channels_, pixels_;
+  /// b * α on the support: at order 0 the kernel as it is, in double precision.
+  std::vector<double> overlap(std::span<const double> kernel) const {
+    std::vector<double> result(kernel.begin(), kernel.end());
+    if (order_ > 0) {
+      Image image(support_.box(), support_.channels());
+      support_.scatter(kernel, image);
+      support_.gather(spline_overlap(image, order_), 1, result);
+    }
+    return result;
+  }
+
+  const SupportPlane& support_;
+  int order_;
   Eigen::MatrixXd wanted_;
   double scale_;
 };
@@ -76,6 +87,7 @@ LbfgsSummary minimize_constrained(const TransportObjective& objective, const Col
     const LbfgsSummary part = minimize_lbfgs(
         [&](std::span<const double> at, std::span<double> gradient) {
           const double error = objective.evaluate(at, gradient);
+          total.history.push_back(error);
           const Eigen::MatrixXd c = residual(at);
           residual.add_gradient(at, multipliers + penalty * c, gradient);
           return error + multipliers.cwiseProduct(c).sum() + penalty / 2 * c.squaredNorm();
@@ -83,7 +95,6 @@ LbfgsSummary minimize_constrained(const TransportObjective& objective, const Col
         {.evaluations = std::max(1, evaluations / rounds), .first_step = objective.projection_step()}, x);
     multipliers += penalty * residual(x);
     total.evaluations += part.evaluations;
-    total.history.insert(total.history.end(), part.history.begin(), part.history.end());
     total.reason = part.reason;
   }
   total.gradient.resize(x.size());
@@ -127,28 +138,12 @@ std::span<const ParamSpec> optimal_texton_params() {
          .help = "evaluations of the model error and its gradient that the fit may take",
          .min = 1,
          .max = 1e6}};
-    ParamSpec colors = color_correction_param();
-    colors.choices.emplace_back("constrained");
-    colors.help =
-        "give the noise the exemplar's color covariance: by the authors' map or the one that moves colors least "
-        "(transport), afterwards, or while the error is minimized (constrained)";
-    all.push_back(std::move(colors));
+    all.push_back(constrainable_color_correction_param());
     std::ranges::copy(support_params(31), std::back_inserter(all));
     std::ranges::copy(spot_noise_params("gaussian"), std::back_inserter(all));
     return all;
   }();
   return specs;
-}
-
-Image mask_of(const Support& support) {
-  Image mask(support.box, 1);
-  auto inside = support.inside.begin();
-  for (int y = 0; y < mask.height(); ++y) {
-    for (float& v : mask.row(0, y)) {
-      v = *inside++ != 0 ? 1.0F : 0.0F;
-    }
-  }
-  return mask;
 }
 
 std::optional<std::string> refuse_optimal_texton(const Problem& problem, const Params& params, const Domain& domain) {
@@ -158,7 +153,7 @@ std::optional<std::string> refuse_optimal_texton(const Problem& problem, const P
 std::unique_ptr<Model> analyze_optimal_texton(const Problem& problem, const Params& params, Seed seed) {
   const GaussianModel model = fit_spot(problem.exemplar, component_of(params));
   const Support support = support_of(params, problem.exemplar.pixels.extent());
-  OptimalTexton fitted = fit_optimal_texton(model, mask_of(support),
+  OptimalTexton fitted = fit_optimal_texton(model, support_image(support),
                                             {.kernels = static_cast<int>(params.integer("kernels")),
                                              .evaluations = static_cast<int>(params.integer("evaluations")),
                                              .keep_color_covariance = params.text("color_correction") == "constrained"},
@@ -166,18 +161,21 @@ std::unique_ptr<Model> analyze_optimal_texton(const Problem& problem, const Para
   if (params.text("color_correction") == "authors" || params.text("color_correction") == "transport") {
     fitted.texton = correct_colors(std::move(fitted.texton), model.spectrum, color_correction_of(params)).texton;
   }
-  return make_spot_noise(std::move(fitted.texton), spot_noise_options(params, support.pixels));
+  Convergence convergence{.step = "evaluation", .rme = std::move(fitted.history), .reason = fitted.reason};
+  for (double& value : convergence.rme) value = std::sqrt(std::max(0.0, value));
+  return make_spot_noise(std::move(fitted.texton), spot_noise_options(params, support.pixels), std::move(convergence));
 }
 
 }  // namespace
 
 OptimalTexton fit_optimal_texton(const GaussianModel& model, const Image& mask, const OptimalTextonOptions& options,
                                  Seed seed) {
-  const TransportObjective objective = objective_of(model, mask);
+  const TransportObjective objective = objective_of(model, mask, options.order);
   std::vector<double> x;
   LbfgsSummary summary = minimize_error(objective, options, seed, x);
   if (options.keep_color_covariance) {
-    LbfgsSummary constrained = minimize_constrained(objective, {model, objective.support()}, options.evaluations, x);
+    LbfgsSummary constrained =
+        minimize_constrained(objective, {model, objective.support(), options.order}, options.evaluations, x);
     constrained.evaluations += summary.evaluations;
     constrained.history.insert(constrained.history.begin(), summary.history.begin(), summary.history.end());
     summary = std::move(constrained);
@@ -188,10 +186,12 @@ OptimalTexton fit_optimal_texton(const GaussianModel& model, const Image& mask, 
   result.stationarity = std::inner_product(x.begin(), x.end(), summary.gradient.begin(), 0.0) / 2;
   result.evaluations = summary.evaluations;
   result.history = std::move(summary.history);
+  result.reason = summary.reason;
   mix_textons(x, options.kernels, objective.support().channels());
   result.texton = {objective.images(x), objective.support().pixels(), model.mean};
   if (options.keep_color_covariance) {
-    CorrectedTexton exact = correct_colors(std::move(result.texton), model.spectrum, ColorCorrection::transport);
+    CorrectedTexton exact =
+        correct_colors(std::move(result.texton), model.spectrum, ColorCorrection::transport, options.order);
     result.texton = std::move(exact.texton);
     result.rme = exact.rme_after;
   }
@@ -200,7 +200,11 @@ OptimalTexton fit_optimal_texton(const GaussianModel& model, const Image& mask, 
 
 TextonBound bound_texton_error(const GaussianModel& model, const Image& mask, const TextonBoundOptions& options,
                                Seed seed) {
-  const TransportObjective objective = objective_of(model, mask);
+  if (options.proof.order != 0) {
+    throw std::invalid_argument(
+        fmt::format("bound on textons of B-spline order {}: expected order 0", options.proof.order));
+  }
+  const TransportObjective objective = objective_of(model, mask, 0);
   std::vector<double> x;
   const LbfgsSummary summary = minimize_error(objective, options.proof, seed, x);
   TextonBound result;

@@ -1,6 +1,8 @@
 // Method "sot": noise of a synthesis-oriented texton, EUSIPCO 2014.
 #pragma once
 
+#include <vector>
+
 #include "methods/exemplar_spot.h"
 #include "methods/spot/alternating_projections.h"
 #include "methods/spot/color_correction.h"
@@ -16,9 +18,17 @@ struct SotOptions {
   ColorCorrection color_correction = ColorCorrection::none;
 };
 
-/// Fits a texton of that support; the seed draws its start. Throws std::invalid_argument for an unusable exemplar, or
-/// as alternate_projections and correct_colors do.
+/// The options "iterations", "tolerance" and "initialization" (random_phase|white), and the start that was chosen.
+std::vector<ParamSpec> projection_params();
+ProjectionOptions projection_options(const Params& params);
+SotStart sot_start_of(const Params& params);
+
+/// Fits a texton of that support, or the coefficients of B-splines of projections.order on it; the seed draws its
+/// start. Colors are corrected as those of the noise. Throws std::invalid_argument for an unusable exemplar, or as
+/// alternate_projections and correct_colors do.
 ProjectedTexton fit_sot(const Exemplar& exemplar, const Support& support, const SotOptions& options, Seed seed);
+/// The same for a model of rank one; options.component is not read.
+ProjectedTexton fit_sot(const GaussianModel& model, const Support& support, const SotOptions& options, Seed seed);
 
 MethodEntry sot_entry();
 

@@ -73,8 +73,11 @@ void require_texton(const Texton& texton) {
 
 class SpotNoise final : public Model, public Gaussian {
  public:
-  SpotNoise(Texton texton, const SpotNoiseOptions& options)
-      : texton_(std::move(texton)), options_(options), kernels_(texton_.kernels) {}
+  SpotNoise(Texton texton, const SpotNoiseOptions& options, std::optional<Convergence> convergence)
+      : texton_(std::move(texton)),
+        options_(options),
+        convergence_(std::move(convergence)),
+        kernels_(texton_.kernels) {}
 
   Image synthesize(const Domain& domain, Seed seed) const override {
     if (const auto reason = refuse_spot_noise(texton_.extent(), domain)) {
@@ -103,6 +106,8 @@ class SpotNoise final : public Model, public Gaussian {
     return result;
   }
   const Texton* texton() const override { return &texton_; }
+  const Convergence* convergence() const override { return convergence_ ? &*convergence_ : nullptr; }
+  const SpotNoiseOptions& options() const { return options_; }
 
   Footprint footprint(const Domain& domain) const override {
     std::size_t bytes = 0;
@@ -129,9 +134,7 @@ class SpotNoise final : public Model, public Gaussian {
             {domain.size.width + width - 1, domain.size.height + height - 1}};
   }
 
-  CellLattice lattice(const Domain& domain) const {
-    return domain.periodic ? torus_lattice(intensity(), domain.size) : plane_lattice(intensity());
-  }
+  CellLattice lattice(const Domain& domain) const { return impact_lattice(intensity(), domain); }
 
   /// Stratified cells have to fit the grid or the torus, which changes the intensity a little; sums are normalized by
   /// what it is.
@@ -180,6 +183,7 @@ class SpotNoise final : public Model, public Gaussian {
 
   Texton texton_;
   SpotNoiseOptions options_;
+  std::optional<Convergence> convergence_;
   SpotKernels kernels_;
 };
 
@@ -229,10 +233,20 @@ SpotNoiseOptions spot_noise_options(const Params& params, std::int64_t support_p
           .route = route_named(params.text("route"))};
 }
 
-std::unique_ptr<Model> make_spot_noise(Texton texton, const SpotNoiseOptions& options) {
+std::unique_ptr<Model> make_spot_noise(Texton texton, const SpotNoiseOptions& options,
+                                       std::optional<Convergence> convergence) {
   require_texton(texton);
   require_intensity(options, texton.support_pixels);
-  return std::make_unique<SpotNoise>(std::move(texton), options);
+  return std::make_unique<SpotNoise>(std::move(texton), options, std::move(convergence));
+}
+
+const SpotNoiseOptions* spot_noise_of(const Model& model) {
+  const auto* noise = dynamic_cast<const SpotNoise*>(&model);
+  return noise == nullptr ? nullptr : &noise->options();
+}
+
+CellLattice impact_lattice(double intensity, const Domain& domain) {
+  return domain.periodic ? torus_lattice(intensity, domain.size) : plane_lattice(intensity);
 }
 
 std::optional<std::string> refuse_spot_noise(Extent texton, const Domain& domain) {

@@ -11,6 +11,7 @@
 
 #include "methods/base/texton.h"
 #include "methods/method.h"
+#include "methods/spot/impacts.h"
 
 namespace textonbench {
 
@@ -33,8 +34,15 @@ std::vector<ParamSpec> spot_noise_params(std::string_view default_impacts);
 SpotNoiseOptions spot_noise_options(const Params& params, std::int64_t support_pixels);
 
 /// Throws std::invalid_argument for kernels of different sizes, no support, non-finite values or an MNI that is not
-/// positive and finite.
-std::unique_ptr<Model> make_spot_noise(Texton texton, const SpotNoiseOptions& options);
+/// positive and finite. `convergence` is what the model tells of the fit of its texton.
+std::unique_ptr<Model> make_spot_noise(Texton texton, const SpotNoiseOptions& options,
+                                       std::optional<Convergence> convergence = std::nullopt);
+
+/// How a model sums its texton, as make_spot_noise was told; null for a model that it did not make.
+const SpotNoiseOptions* spot_noise_of(const Model& model);
+
+/// Cells of stratified impacts on a domain, `intensity` impacts a pixel or nearly so.
+CellLattice impact_lattice(double intensity, const Domain& domain);
 
 /// A reason why no spot noise serves that domain.
 std::optional<std::string> refuse_spot_noise(Extent texton, const Domain& domain);

@@ -110,6 +110,31 @@ std::vector<SupportRun> support_runs(const Support& support) {
   return runs;
 }
 
+Image support_image(const Support& support) {
+  Image image(support.box, 1);
+  auto inside = support.inside.begin();
+  for (int y = 0; y < image.height(); ++y) {
+    for (float& v : image.row(0, y)) {
+      v = *inside++ != 0 ? 1.0F : 0.0F;
+    }
+  }
+  return image;
+}
+
+double spline_support_area(const Support& support, int order) {
+  // The squares consist of whole cells between the splines' knots, order + 1 of them on each side.
+  const int width = support.box.width + order;
+  const int height = support.box.height + order;
+  std::vector<std::uint8_t> covered(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (const SupportRun& run : support_runs(support)) {
+    for (int y = run.y; y <= run.y + order; ++y) {
+      const auto row = covered.begin() + std::ptrdiff_t{y} * width;
+      std::fill(row + run.first, row + run.last + order, std::uint8_t{1});
+    }
+  }
+  return static_cast<double>(std::ranges::count(covered, std::uint8_t{1}));
+}
+
 Image crop_to_support(const Image& torus, int left, int top, const Support& support) {
   require_fit(support.box, torus.extent());
   const auto wrap = [](int v, int n) { return ((v % n) + n) % n; };
@@ -138,7 +163,7 @@ std::vector<ParamSpec> support_params(int default_support) {
            .choices = {"square", "disc", "mask"}},
           {.name = "mask",
            .default_value = std::string(),
-           .unit = "",
+           .unit = "file",
            .help = "image file of the support when shape is mask"}};
 }
 

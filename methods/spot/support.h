@@ -31,6 +31,13 @@ struct SupportRun {
 /// The longest runs that make up S, row by row from left to right.
 std::vector<SupportRun> support_runs(const Support& support);
 
+/// S as an image of its box: 1 inside, 0 outside.
+Image support_image(const Support& support);
+
+/// Area where a sum of B-splines of that order at the pixels of S may be other than zero: of the union of squares of
+/// side order + 1 around them, (W + order) (H + order) for a rectangle.
+double spline_support_area(const Support& support, int order);
+
 /// The pixels of a torus image that S covers when pixel (0, 0) of its box lies at (left, top); zero off S. The box may
 /// cross the border. Throws std::invalid_argument when the box is larger than the image.
 Image crop_to_support(const Image& torus, int left, int top, const Support& support);

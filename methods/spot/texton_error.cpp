@@ -1,6 +1,9 @@
 #include "methods/spot/texton_error.h"
 
+#include <utility>
+
 #include "methods/base/box_fft.h"
+#include "methods/spot/spline_spectrum.h"
 
 namespace textonbench {
 
@@ -13,8 +16,13 @@ CrossSpectrum texton_spectrum(const Texton& texton, Extent torus) {
   return spectrum;
 }
 
-double relative_model_error(const Texton& texton, const CrossSpectrum& target) {
-  return relative_model_error(texton_spectrum(texton, target.grid()), target);
+double relative_model_error(const Texton& texton, const CrossSpectrum& target, int order) {
+  CrossSpectrum spectrum = texton_spectrum(texton, target.grid());
+  const SplineGain gain(order, target.grid());
+  for (Spectrum& factor : spectrum.factors) {
+    factor = gain.apply(std::move(factor));
+  }
+  return relative_model_error(spectrum, target);
 }
 
 }  // namespace textonbench

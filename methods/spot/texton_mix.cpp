@@ -1,6 +1,7 @@
 #include "methods/spot/texton_mix.h"
 
 #include <cmath>
+#include <vector>
 
 namespace textonbench {
 namespace {
@@ -53,29 +54,6 @@ double energy(std::span<const double> values) {
 }
 
 }  // namespace
-
-std::vector<double> kernel_kurtosis(std::span<const Image> kernels, std::int64_t support_pixels) {
-  const int channels = kernels.front().channels();
-  std::vector<double> result(static_cast<std::size_t>(channels));
-  for (int c = 0; c < channels; ++c) {
-    double squares = 0;
-    double fourths = 0;
-    for (const Image& kernel : kernels) {
-      for (int y = 0; y < kernel.height(); ++y) {
-        for (const float v : kernel.row(c, y)) {
-          const double square = static_cast<double>(v) * static_cast<double>(v);
-          squares += square;
-          fourths += square * square;
-        }
-      }
-    }
-    result[static_cast<std::size_t>(c)] =
-        squares > 0
-            ? static_cast<double>(support_pixels) * static_cast<double>(kernels.size()) * fourths / (squares * squares)
-            : 0;
-  }
-  return result;
-}
 
 void mix_textons(std::span<double> kernels, int count, int channels) {
   const std::size_t size = kernels.size() / static_cast<std::size_t>(count);

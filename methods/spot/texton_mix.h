@@ -6,19 +6,12 @@
 //
 //   κ_c = |S| K Σ_k Σ_x h_{k,c}(x)⁴ / (Σ_k Σ_x h_{k,c}(x)²)²,
 //
-// which is about 3 for featureless kernels of equal energy, whatever K.
+// which is about 3 for featureless kernels of equal energy, whatever K (kernel_moments.h: poisson_moments at MNI 1).
 #pragma once
 
-#include <cstdint>
 #include <span>
-#include <vector>
-
-#include "methods/base/image.h"
 
 namespace textonbench {
-
-/// κ_c of each channel; 0 for a channel that is zero everywhere.
-std::vector<double> kernel_kurtosis(std::span<const Image> kernels, std::int64_t support_pixels);
 
 /// Mixes kernels, each given as as many numbers, `channels` equal parts of them one after another, in place: first of
 /// all to equal energies (to 1e-6 of their mean), then, as far as that leaves a choice, to a least Σ_c κ_c. Plane

@@ -7,7 +7,9 @@
 #include <complex>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
+#include "methods/base/box_fft.h"
 #include "methods/base/parallel.h"
 
 namespace textonbench {
@@ -15,18 +17,45 @@ namespace {
 
 using Bin = std::complex<double>;
 
-/// T* ĥ at one frequency.
-Bin product(const Spectrum& target, const Spectrum& kernel, int kx, int ky) {
-  double re = 0;
-  double im = 0;
-  for (int c = 0; c < target.channels(); ++c) {
-    const Bin t(target.at(c, kx, ky));
-    const Bin h(kernel.at(c, kx, ky));
-    re += t.real() * h.real() + t.imag() * h.imag();
-    im += t.real() * h.imag() - t.imag() * h.real();
+/// Real and imaginary parts of T* α̂ along a row of bins, and |α̂|² added to `energy`.
+struct RowProducts {
+  std::vector<double> re, im;
+
+  RowProducts(const Spectrum& target, const Spectrum& coefficients, int ky, std::vector<double>& energy)
+      : re(energy.size()), im(energy.size()) {
+    for (int c = 0; c < target.channels(); ++c) {
+      const auto t = target.row(c, ky);
+      const auto h = coefficients.row(c, ky);
+      for (std::size_t kx = 0; kx < energy.size(); ++kx) {
+        const Bin a(t[kx]);
+        const Bin b(h[kx]);
+        re[kx] += a.real() * b.real() + a.imag() * b.imag();
+        im[kx] += a.real() * b.imag() - a.imag() * b.real();
+        energy[kx] += b.real() * b.real() + b.imag() * b.imag();
+      }
+    }
   }
-  return {re, im};
-}
+};
+
+/// Of a row of bins: T* α̂_k for every k, Σ_k |α̂_k|² and sqrt(Σ_k |T* α̂_k|²).
+struct RowOverlap {
+  std::vector<RowProducts> products;
+  std::vector<double> energy, overlap;
+
+  RowOverlap(const Spectrum& target, const std::vector<Spectrum>& coefficients, int ky)
+      : energy(static_cast<std::size_t>(target.columns())), overlap(energy.size()) {
+    products.reserve(coefficients.size());
+    for (const Spectrum& spectrum : coefficients) {
+      const RowProducts& row = products.emplace_back(target, spectrum, ky, energy);
+      for (std::size_t kx = 0; kx < overlap.size(); ++kx) {
+        overlap[kx] += row.re[kx] * row.re[kx] + row.im[kx] * row.im[kx];
+      }
+    }
+    for (double& s : overlap) {
+      s = std::sqrt(s);
+    }
+  }
+};
 
 double square(const Spectrum& spectrum, int kx, int ky) {
   double sum = 0;
@@ -56,9 +85,10 @@ double energy_without_mean(const Spectrum& spectrum) {
 
 }  // namespace
 
-TransportObjective::TransportObjective(Spectrum target, const Image& mask)
+TransportObjective::TransportObjective(Spectrum target, const Image& mask, int order)
     : target_(std::move(target)),
       support_(mask, target_.channels(), target_.raster()),
+      gain_(order, target_.raster()),
       variance_(energy_without_mean(target_) / static_cast<double>(target_.raster().area())) {
   if (!(variance_ > 0 && std::isfinite(variance_))) {
     throw std::invalid_argument(
@@ -68,43 +98,47 @@ TransportObjective::TransportObjective(Spectrum target, const Image& mask)
 
 std::vector<Spectrum> TransportObjective::transform(std::span<const double> kernels) const {
   const std::size_t count = kernels.size() / support_.size();
-  Image image(target_.raster(), target_.channels());
+  Image image(support_.box(), target_.channels());
   std::vector<Spectrum> spectra;
   spectra.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
     support_.scatter(kernels.subspan(k * support_.size(), support_.size()), image);
-    spectra.push_back(forward_fft(image));
+    spectra.push_back(forward_fft_of_box(image, target_.raster()));
   }
   return spectra;
 }
 
 double TransportObjective::evaluate(std::span<const double> kernels, std::span<double> gradient) const {
   std::vector<Spectrum> spectra = transform(kernels);
-  // Bin by bin: the value's terms, and ĥ_k becomes ĥ_k − T (T* ĥ_k) / s.
+  // Row by row: the value's terms, and α̂_k becomes g (g α̂_k − T (T* α̂_k) / s), s the overlap without the gain g.
   const double sum = sum_of_rows(target_.rows(), [&](int ky) {
-    std::vector<Bin> products(spectra.size());
+    const RowOverlap row(target_, spectra, ky);
+    std::vector<double> gain;
+    std::vector<double> inverse_overlap;
+    gain.reserve(row.energy.size());
+    inverse_overlap.reserve(row.energy.size());
     double row_sum = 0;
-    for (int kx = ky == 0 ? 1 : 0; kx < target_.columns(); ++kx) {
-      double energy = 0;
-      double squared_overlap = 0;
-      for (std::size_t k = 0; k < spectra.size(); ++k) {
-        products[k] = product(target_, spectra[k], kx, ky);
-        squared_overlap += std::norm(products[k]);
-        energy += square(spectra[k], kx, ky);
+    for (int kx = 0; kx < target_.columns(); ++kx) {
+      const auto i = static_cast<std::size_t>(kx);
+      gain.push_back(gain_.column(kx) * gain_.row(ky));
+      // Where T is orthogonal to every kernel (or zero) the second term has no slope to offer.
+      inverse_overlap.push_back(row.overlap[i] > 0 ? 1 / row.overlap[i] : 0);
+      if (kx > 0 || ky > 0) {
+        row_sum += target_.multiplicity(kx) * gain[i] * (gain[i] * row.energy[i] - 2 * row.overlap[i]);
       }
-      const double s = std::sqrt(squared_overlap);
-      row_sum += target_.multiplicity(kx) * (energy - 2 * s);
-      if (s == 0) {
-        continue;  // T is orthogonal to every kernel (or zero): the second term has no slope to offer
-      }
-      for (std::size_t k = 0; k < spectra.size(); ++k) {
-        const Bin weight = products[k] / s;
-        for (int c = 0; c < target_.channels(); ++c) {
-          const Bin t(target_.at(c, kx, ky));
-          const Bin part(t.real() * weight.real() - t.imag() * weight.imag(),
-                         t.real() * weight.imag() + t.imag() * weight.real());
-          std::complex<float>& h = spectra[k].at(c, kx, ky);
-          h = std::complex<float>(Bin(h) - part);
+    }
+    for (std::size_t k = 0; k < spectra.size(); ++k) {
+      const RowProducts& product = row.products[k];
+      for (int c = 0; c < target_.channels(); ++c) {
+        const auto target = target_.row(c, ky);
+        const auto bins = spectra[k].row(c, ky);
+        for (std::size_t i = 0; i < bins.size(); ++i) {
+          const Bin t(target[i]);
+          const Bin h(bins[i]);
+          const double re = product.re[i] * inverse_overlap[i];
+          const double im = product.im[i] * inverse_overlap[i];
+          bins[i] = {static_cast<float>(gain[i] * (gain[i] * h.real() - (t.real() * re - t.imag() * im))),
+                     static_cast<float>(gain[i] * (gain[i] * h.imag() - (t.real() * im + t.imag() * re)))};
         }
       }
     }
@@ -114,7 +148,10 @@ double TransportObjective::evaluate(std::span<const double> kernels, std::span<d
     for (int c = 0; c < target_.channels(); ++c) {
       spectra[k].at(c, 0, 0) = 0;
     }
-    support_.gather(inverse_fft(spectra[k]), 2 / variance_, gradient.subspan(k * support_.size(), support_.size()));
+    const Image sum_over_bins =
+        unnormalized_inverse_fft_in_box(spectra[k], support_.box(), [](int, const BinBlock&) {});
+    support_.gather(sum_over_bins, 2 / (variance_ * static_cast<double>(target_.raster().area())),
+                    gradient.subspan(k * support_.size(), support_.size()));
   }
   return 1 + sum / (variance_ * static_cast<double>(target_.raster().area()));
 }
@@ -123,13 +160,10 @@ std::vector<double> TransportObjective::overlap(std::span<const double> kernels)
   const std::vector<Spectrum> spectra = transform(kernels);
   std::vector<double> s(static_cast<std::size_t>(target_.bins()));
   parallel_for(target_.rows(), [&](int ky) {
+    const RowOverlap row(target_, spectra, ky);
     for (int kx = ky == 0 ? 1 : 0; kx < target_.columns(); ++kx) {
-      double squared = 0;
-      for (const Spectrum& spectrum : spectra) {
-        squared += std::norm(product(target_, spectrum, kx, ky));
-      }
       s[static_cast<std::size_t>(ky) * static_cast<std::size_t>(target_.columns()) + static_cast<std::size_t>(kx)] =
-          std::sqrt(squared);
+          gain_.column(kx) * gain_.row(ky) * row.overlap[static_cast<std::size_t>(kx)];
     }
   });
   return s;

@@ -9,22 +9,25 @@
 //
 //   ĥ_k − T (T* ĥ_k) / s   for ξ ≠ 0, and 0 at ξ = 0.
 //
-// A gradient step of E / (2 |Ω|) is one alternating projection of the SOT (up to ĥ_k(0), which does not count).
+// Where the kernels are the coefficients of B-splines (spline_spectrum.h) ĥ_k stands for α̂_k b̂^{1/2} and the gradient
+// is multiplied by b̂^{1/2}. At order 0 a gradient step of E / (2 |Ω|) is one alternating projection of the SOT (up to
+// ĥ_k(0), which does not count).
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "methods/base/fft.h"
+#include "methods/spot/spline_spectrum.h"
 #include "methods/spot/support_plane.h"
 
 namespace textonbench {
 
 class TransportObjective {
  public:
-  /// `target`: T, whose value at ξ = 0 is not read. Throws std::invalid_argument for a target that is zero elsewhere
-  /// too and for a support that SupportPlane refuses.
-  TransportObjective(Spectrum target, const Image& mask);
+  /// `target`: T, whose value at ξ = 0 is not read. `order`: of the B-splines. Throws std::invalid_argument for a
+  /// target that is zero elsewhere too, for a support that SupportPlane refuses and for an order out of range.
+  explicit TransportObjective(Spectrum target, const Image& mask, int order = 0);
 
   const Spectrum& target() const { return target_; }
   const SupportPlane& support() const { return support_; }
@@ -45,10 +48,12 @@ class TransportObjective {
   std::vector<Image> images(std::span<const double> kernels) const;
 
  private:
+  /// α̂_k.
   std::vector<Spectrum> transform(std::span<const double> kernels) const;
 
   Spectrum target_;
   SupportPlane support_;
+  SplineGain gain_;
   double variance_;
 };
 

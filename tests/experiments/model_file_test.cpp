@@ -3,12 +3,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "experiments/texton_file.h"
+#include "methods/base/image_io.h"
 #include "methods/base/random.h"
+#include "methods/base/spectrum.h"
+#include "methods/spot/color_correction.h"
+#include "methods/spot/spline_spectrum.h"
+#include "methods/spot/texton_error.h"
 #include "tests/temporary_folder.h"
 
 namespace textonbench::model_file_test {
@@ -103,23 +110,91 @@ TEST_F(ModelFileTest, TellsWhatIsWrong) {
   EXPECT_THROW(read_model_file(folder_.path() / "none.json"), std::invalid_argument);
 }
 
-TEST_F(ModelFileTest, ATextonOfOrderZeroIsAModel) {
-  const TextonFile texton{
-      .order = 0, .mean = {0.5, 0.25, 1}, .coefficients = example().texton.kernels[0], .source = "s"};
-  write_texton_file(texton, folder_.path() / "a.texton");
+TEST_F(ModelFileTest, SplinesKeepTheirOrderAndArea) {
+  ModelFile model = example();
+  model.order = 3;
+  model.support_area = 41.5;
+  write_model_file(model, file());
+  const SplineTexton read = read_model_file(file()).spline_texton();
+  EXPECT_EQ(read.order, 3);
+  EXPECT_EQ(read.support_area, 41.5);
+  EXPECT_EQ(read.coefficients.kernels[1].at(2, 4, 3), model.texton.kernels[1].at(2, 4, 3));
+  EXPECT_FALSE(written().contains("order")) << "a spot noise has none";
+  const auto with = [&](int order, double area) {
+    Json json = written();
+    json["order"] = order;
+    json["support_area"] = area;
+    return message_for(json.dump());
+  };
+  EXPECT_EQ(with(1, 30), "accepted");
+  EXPECT_THAT(with(6, 30), HasSubstr("order: expected a whole number from 0 to 5"));
+  EXPECT_THAT(with(1, 30.5), HasSubstr("support_area: expected a number above 0, at most 30"));
+  EXPECT_THAT(with(1, 0), HasSubstr("support_area: expected a number above 0"));
+}
+
+TEST_F(ModelFileTest, ATextonIsAModelOfOneKernelWithoutItsFrame) {
+  const Image kernel = example().texton.kernels[0];
+  write_texton_file({.order = 0, .mean = {0.5, 0.25, 1}, .coefficients = kernel, .source = "s"},
+                    folder_.path() / "a.texton");
   const ModelFile model = read_texton_as_model(folder_.path() / "a.texton");
   EXPECT_EQ(model.texton.support_pixels, 20);
-  EXPECT_EQ(model.texton.kernels[0].at(2, 3, 1), texton.coefficients.at(2, 3, 1));
+  EXPECT_EQ(model.texton.kernels[0].at(2, 3, 1), kernel.at(2, 3, 1));
   EXPECT_EQ(model.texton.mean[1], 0.25);
   EXPECT_EQ(model.method, "");
-  write_texton_file({.order = 1, .mean = {}, .coefficients = Image({3, 3}, 3), .source = "s"},
-                    folder_.path() / "b.texton");
+  EXPECT_FALSE(model.order);
+
+  Image framed({7, 6}, 3);
+  framed.at(0, 1, 1) = 2;
+  framed.at(2, 5, 4) = 3;
+  write_texton_file({.order = 1, .mean = {}, .coefficients = framed, .source = "s"}, folder_.path() / "b.texton");
+  const ModelFile linear = read_texton_as_model(folder_.path() / "b.texton");
+  EXPECT_EQ(linear.order, 1);
+  EXPECT_EQ(linear.support_area, 30) << "the frame is where the splines of the outer coefficients end";
+  EXPECT_EQ(linear.texton.extent(), (Extent{5, 4}));
+  EXPECT_EQ(linear.texton.kernels[0].at(0, 0, 0), 2);
+  EXPECT_EQ(linear.texton.kernels[0].at(2, 4, 3), 3);
+
+  write_texton_file({.order = 1, .mean = {}, .coefficients = Image({2, 2}, 3), .source = "s"},
+                    folder_.path() / "c.texton");
   try {
-    read_texton_as_model(folder_.path() / "b.texton");
+    read_texton_as_model(folder_.path() / "c.texton");
     FAIL() << "accepted";
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), HasSubstr("order 1: expected order 0"));
+    EXPECT_THAT(error.what(), HasSubstr("2x2 coefficients of order 1 are nothing but the frame of 1 zeros"));
   }
+}
+
+/// Of every published texton: its RME against its image, the colors of its noise, its mean.
+TEST_F(ModelFileTest, PublishedTextonsHaveTheErrorsAndColorsOfTheReference) {
+  const char* data = std::getenv("TEXTONBENCH_DATA");
+  const char* reference = std::getenv("TEXTONBENCH_REFERENCE");
+  if (data == nullptr || reference == nullptr) {
+    GTEST_SKIP() << "set TEXTONBENCH_DATA and TEXTONBENCH_REFERENCE to folders with textons and their errors";
+  }
+  std::ifstream in(std::filesystem::path(reference) / "published_textons_rme.json");
+  const Json published = Json::parse(in);
+  int compared = 0;
+  for (const Json& row : published.at("rows")) {
+    const std::string name = row.at("name").get<std::string>();
+    const std::filesystem::path texton_file =
+        std::filesystem::path(data) / "textons" / (name + "_s" + std::to_string(row.at("s").get<int>()) + ".texton");
+    const std::filesystem::path picture = std::filesystem::path(data) / (name + ".png");
+    if (!std::filesystem::exists(texton_file) || !std::filesystem::exists(picture)) continue;
+    const ModelFile model = read_texton_as_model(texton_file);
+    ASSERT_EQ(model.order, row.at("order").get<int>()) << texton_file;
+    const GaussianModel exemplar = gaussian_model(periodic_component(read_image(picture).image));
+    EXPECT_NEAR(relative_model_error(model.texton, exemplar.spectrum, *model.order), row.at("rme").get<double>(), 2e-5)
+        << texton_file;
+    const Eigen::MatrixXd wanted = color_covariance(exemplar.spectrum);
+    EXPECT_LT((color_covariance(model.texton, *model.order) - wanted).norm(), 1e-5 * wanted.norm()) << texton_file;
+    const SplineTexton splines = model.spline_texton();
+    EXPECT_NEAR(relative_model_error(spline_spectrum(splines, exemplar.spectrum.grid()), exemplar.spectrum),
+                row.at("rme").get<double>(), 2e-5);
+    EXPECT_EQ(splines.support_area, std::pow(row.at("file_w").get<double>() - 1, 2)) << "side of h is n + order";
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(model.texton.mean[c], exemplar.mean[c], 1e-6);
+    ++compared;
+  }
+  EXPECT_GE(compared, 15);
 }
 
 }  // namespace textonbench::model_file_test

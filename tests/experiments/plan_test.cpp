@@ -9,6 +9,7 @@
 #include <set>
 
 #include "experiments/metrics/metric.h"
+#include "experiments/provenance.h"
 #include "tests/experiments/exemplar_home.h"
 
 namespace textonbench::plan_test {
@@ -188,6 +189,18 @@ TEST_F(PlanTest, AWrongPictureUnderAKnownNameIsAnError) {
               AllOf(StartsWith("6:22: "), HasSubstr("is another picture"), HasSubstr("rename or remove it")));
 }
 
+TEST_F(PlanTest, SamplesOffTheExemplarsPixelsAreNotComparedWithIt) {
+  const std::string table = rpn_ + "periodic = false\nstep = 0.05\n";
+  EXPECT_EQ(plan_table(table + "metrics = [\"rme\"]").runs.at(0).spec.step, 0.05);
+  try {
+    plan_table(table + "metrics = [\"rme\", \"skewness\"]");
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("step = 0.05: skewness compares pixels"));
+  }
+  EXPECT_THROW(plan_table(rpn_ + "step = 0"), ConfigError);
+}
+
 TEST_F(PlanTest, GroupsOfMetricsStandForTheirLevel) {
   const auto metrics = [&](const std::string& list) {
     return plan_table(rpn_ + "metrics = " + list).runs.at(0).spec.metrics;
@@ -195,10 +208,12 @@ TEST_F(PlanTest, GroupsOfMetricsStandForTheirLevel) {
   const auto identities = std::ranges::count(metric_catalog(), true, &MetricEntry::identity);
   EXPECT_EQ(metrics("\"@identity\"").size(), identities);
   EXPECT_EQ(metrics("\"@all\"").size() + identities, metric_catalog().size());
-  EXPECT_THAT(metrics("[\"@model\"]"), ElementsAre("kept_variance", "kernel_kurtosis", "ot_distance", "poisson_impacts",
-                                                   "rme", "rme_corrected", "rme_printed", "stratified_impacts"));
+  EXPECT_THAT(metrics("[\"@model\"]"),
+              ElementsAre("kept_variance", "kernel_kurtosis", "local_kurtosis_greatest", "local_kurtosis_least",
+                          "ot_distance", "poisson_impacts", "predicted_kurtosis", "rme", "rme_corrected", "rme_printed",
+                          "stratified_impacts"));
   EXPECT_THAT(metrics("[\"@model\", \"rme\", \"skewness\"]"),
-              AllOf(testing::SizeIs(9), Contains("rme"), Contains("skewness")));
+              AllOf(testing::SizeIs(12), Contains("rme"), Contains("skewness")));
   EXPECT_THAT(metrics("\"@sample\""), AllOf(Contains("skewness"), Not(Contains("rme"))));
   EXPECT_THAT(metrics("\"@cost\""), AllOf(Contains("analyze_seconds"), Not(Contains("rme"))));
   EXPECT_THAT(metrics("[]"), IsEmpty());
@@ -287,6 +302,20 @@ TEST_F(PlanTest, AHundredThousandRunsHaveIdsOfTheirOwn) {
 }
 
 /// A run's identity comes from the run alone, never from what else is planned.
+TEST_F(PlanTest, ChangedContentOfAFileThatAnOptionNamesIsAnotherRun) {
+  const std::filesystem::path mask = home_.path() / "mask.png";
+  const std::string table = fmt::format(
+      "method = \"sot\"\nexemplars = \"ring\"\nparams.shape = \"mask\"\nparams.mask = \"{}\"", mask.string());
+  EXPECT_THAT(table_error(table), AllOf(HasSubstr("option mask: "), HasSubstr("mask.png: cannot be read")));
+  std::ofstream(mask) << "one";
+  const PlannedRun before = plan_table(table).runs.at(0);
+  EXPECT_EQ(before.spec.file_sha256, (std::map<std::string, std::string>{{"mask", sha256("one")}}));
+  EXPECT_EQ(plan_table(table).runs.at(0).id, before.id);
+  EXPECT_EQ(run_id(run_spec_from_json(to_json(before.spec))), before.id);
+  std::ofstream(mask) << "two";
+  EXPECT_NE(plan_table(table).runs.at(0).id, before.id);
+}
+
 TEST_F(PlanTest, AnotherRunDoesNotChangeAnId) {
   const Plan one = plan_table(rpn_ + "seeds = 2");
   const Plan many = plan_table("method = [\"adsn\", \"rpn\"]\nexemplars = [\"grass\", \"ring\"]\nseeds = [1, 2]");

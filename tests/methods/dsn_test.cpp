@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "methods/base/spectrum.h"
+#include "methods/spot/extended_spot.h"
 #include "methods/spot/kernel_moments.h"
 #include "tests/texture.h"
 
@@ -38,6 +41,21 @@ TEST(Dsn, HasTheLawOfAdsnToSecondOrder) {
   }
   ASSERT_NE(ours->texton(), nullptr);
   EXPECT_EQ(ours->texton()->extent(), (Extent{20, 14}));
+}
+
+TEST(Dsn, WithABorderItIsTheNoiseOfTheEquivalentSpot) {
+  const Exemplar exemplar = test_exemplar({24, 17}, 3);
+  const MethodEntry& dsn = find_method("dsn");
+  const auto model = dsn.analyze({exemplar}, Params(dsn.params, {{"border", std::int64_t{5}}}), Seed{1});
+  const Image spot = exemplar_spot_texton(exemplar, SpotSource::periodic_component).kernels[0];
+  const Image expected = equivalent_spot(spot, {24, 17}, 5);
+  const Image& kernel = model->texton()->kernels[0];
+  for (int y = 0; y < 17; ++y) {
+    for (int x = 0; x < 24; ++x) ASSERT_EQ(kernel.at(1, x, y), expected.at(1, x, y));
+  }
+  EXPECT_LT(std::fabs(kernel.at(0, 0, 8)), 0.05 * std::fabs(spot.at(0, 0, 8)));
+  EXPECT_THROW(dsn.analyze({exemplar}, Params(dsn.params, {{"border", std::int64_t{9}}}), Seed{1}),
+               std::invalid_argument);
 }
 
 TEST(Dsn, RefusesAToruslessThanTheExemplarAndTakesAnyOther) {

@@ -43,6 +43,16 @@ TEST(KernelMoments, OfAFlatKernelAreThoseOfAPoissonNumber) {
   }
 }
 
+TEST(KernelMoments, KurtosisOfGaussianKernelsIsThreeWhateverTheirNumber) {
+  for (const int kernels : {1, 2, 4}) {
+    EXPECT_NEAR(poisson_moments(noise_texton({60, 60}, kernels, true), 1)[0].excess_kurtosis, 3,
+                5 * std::sqrt(24.0 / (3600 * kernels)));
+  }
+  Texton flat_channel = noise_texton({4, 4}, 1, true);
+  flat_channel.kernels[0] = Image({4, 4}, 1);
+  EXPECT_EQ(poisson_moments(flat_channel, 1)[0].excess_kurtosis, 0) << "a channel without variation";
+}
+
 TEST(KernelMoments, CellDifferenceLawIsThatOfAllItsCells) {
   for (const CellAxis axis : {CellAxis{3 * 1024, 1024}, CellAxis{17, 5}, CellAxis{5, 7}, CellAxis{40, 40},
                               CellAxis{1536, 1024}, CellAxis{64, 1024}, CellAxis{1, 1024}}) {

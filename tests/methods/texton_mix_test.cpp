@@ -79,21 +79,6 @@ TEST(TextonMix, FindsALowKurtosisAmongTheEqualEnergies) {
   }
 }
 
-TEST(TextonMix, KurtosisOfGaussianKernelsIsThreeWhateverTheirNumber) {
-  for (const int count : {1, 2, 4}) {
-    std::vector<Image> kernels;
-    for (int k = 0; k < count; ++k) {
-      Image& kernel = kernels.emplace_back(Extent{60, 60}, 2);
-      for (int y = 0; y < 60; ++y) {
-        fill_normal(Stream(Seed{9}).child("kernel"), static_cast<std::uint64_t>(k * 60 + y), 0, kernel.row(0, y));
-      }
-    }
-    const std::vector<double> kurtosis = kernel_kurtosis(kernels, 3600);
-    EXPECT_NEAR(kurtosis[0], 3, 5 * std::sqrt(24.0 / (3600 * count)));
-    EXPECT_EQ(kurtosis[1], 0) << "a channel without variation";
-  }
-}
-
 TEST(TextonMix, LeavesZeroKernelsAlone) {
   std::vector<double> zero(2 * channels * pixels);
   mix_textons(zero, 2, channels);

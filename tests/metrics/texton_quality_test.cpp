@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "experiments/metrics/model_error.h"
 #include "methods/method.h"
 #include "tests/texture.h"
 
@@ -47,10 +50,75 @@ TEST_F(TextonQuality, ImpactsNeededFollowFromTheKurtosisOfTheKernel) {
   EXPECT_LT(*stratified_impacts(*model, target_, domain_), *poisson_impacts(*model, target_, domain_));
 }
 
+TEST_F(TextonQuality, KurtosisIsPredictedForTheImpactsThatTheModelHas) {
+  const auto with = [&](const char* impacts, double mni) {
+    return fit("sot", {{"support", std::int64_t{9}}, {"impacts", std::string(impacts)}, {"mni", mni}});
+  };
+  EXPECT_EQ(*predicted_kurtosis(*with("gaussian", 5), target_, domain_), 0);
+  EXPECT_NEAR(*predicted_kurtosis(*with("poisson", 5), target_, domain_),
+              2 * *predicted_kurtosis(*with("poisson", 10), target_, domain_), 1e-6);
+  EXPECT_LE(*predicted_kurtosis(*with("poisson", 1), target_, domain_),
+            *kernel_kurtosis(*with("poisson", 1), target_, domain_));
+  EXPECT_FALSE(local_kurtosis_least(*with("poisson", 5), target_, domain_));
+
+  const auto stratified = with("stratified", 5);
+  const double predicted = *predicted_kurtosis(*stratified, target_, domain_);
+  EXPECT_LT(*local_kurtosis_least(*stratified, target_, domain_), predicted);
+  EXPECT_GT(*local_kurtosis_greatest(*stratified, target_, domain_), predicted);
+  // On 40 samples of 572 pixels: within five standard errors, sqrt(24 / n) for n effective samples of a correlation
+  // area of at most 81 pixels.
+  std::vector<Image> samples;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) samples.push_back(stratified->synthesize(domain_, Seed{seed}));
+  const auto statistic = find_metric("excess_kurtosis").of_samples(target_, domain_, Seed{1});
+  EXPECT_NEAR(measure_samples(*statistic, samples, domain_).value, predicted, 5 * std::sqrt(24.0 / (40 * 572 / 81)));
+}
+
+TEST_F(TextonQuality, PatchesOfTheGaussianLimitScoreTheFloorWhateverTheTexton) {
+  const MetricEntry& metric = find_metric("limit_patch_distance");
+  const auto of = [&](const Domain& domain, const char* impacts, double mni) {
+    const auto model = fit("sot", {{"support", std::int64_t{5}}, {"impacts", std::string(impacts)}, {"mni", mni}});
+    std::vector<Image> samples;
+    for (std::uint64_t seed = 0; seed < 8; ++seed) samples.push_back(model->synthesize(domain, Seed{seed}));
+    return measure_samples(*metric.of_limit(*model, domain, Seed{1}), samples, domain).value;
+  };
+  for (const Domain& domain : {Domain{.size = {128, 128}, .periodic = true}, Domain{.size = {200, 160}}}) {
+    const double limit = of(domain, "gaussian", 1);
+    EXPECT_LT(limit, 0.02);
+    EXPECT_NEAR(of(domain, "poisson", 3000), limit, 0.25 * limit);
+    EXPECT_GT(of(domain, "poisson", 1), 2 * limit);
+  }
+  EXPECT_EQ(metric.of_limit(*fit("adsn", {}), domain_, Seed{1}), nullptr);
+}
+
+TEST_F(TextonQuality, OfSplinesIsThatOfTheirNoise) {
+  const std::map<std::string, ParamValue> support{{"support", std::int64_t{9}}};
+  const auto sot = fit("sot", support);
+  for (const int order : {0, 1, 3}) {
+    std::map<std::string, ParamValue> given = support;
+    given["order"] = std::int64_t{order};
+    const auto model = fit("texton_noise", given);
+    const double error = relative_model_error(model->gaussian()->spectrum({26, 22}), target_.gaussian.spectrum);
+    EXPECT_NEAR(*rme(*model, target_, domain_), error, 1e-12);
+    const double variance = *kept_variance(*model, target_, domain_);
+    EXPECT_LT(variance, 1);
+    EXPECT_NEAR(variance, *kept_variance(*sot, target_, domain_), 0.1) << order;
+    EXPECT_GE(*rme_corrected(*model, target_, domain_), error - 1e-6);
+    EXPECT_GT(*kernel_kurtosis(*model, target_, domain_), 1);
+    EXPECT_NEAR(*poisson_impacts(*model, target_, domain_), *kernel_kurtosis(*model, target_, domain_) / 0.1, 1e-9);
+    EXPECT_FALSE(stratified_impacts(*model, target_, domain_));
+    EXPECT_EQ(rme_bound(*model, target_, domain_).has_value(), order == 0);
+    if (order == 0) {
+      EXPECT_EQ(variance, *kept_variance(*sot, target_, domain_));
+      EXPECT_EQ(*rme_corrected(*model, target_, domain_), *rme_corrected(*sot, target_, domain_));
+      EXPECT_NEAR(*kernel_kurtosis(*model, target_, domain_), *kernel_kurtosis(*sot, target_, domain_), 1e-9);
+    }
+  }
+}
+
 TEST_F(TextonQuality, AModelWithoutATextonHasNone) {
   const auto model = fit("adsn", {});
-  for (const auto metric :
-       {kept_variance, rme_corrected, rme_bound, kernel_kurtosis, poisson_impacts, stratified_impacts}) {
+  for (const auto metric : {kept_variance, rme_corrected, rme_bound, kernel_kurtosis, predicted_kurtosis,
+                            local_kurtosis_least, local_kurtosis_greatest, poisson_impacts, stratified_impacts}) {
     EXPECT_FALSE(metric(*model, target_, domain_));
   }
 }

@@ -1,0 +1,44 @@
+// Pictures too large to be drawn at once.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "experiments/execute.h"
+#include "experiments/exemplars.h"
+#include "methods/base/image_io.h"
+#include "methods/method.h"
+#include "tests/cli/program.h"
+#include "tests/temporary_folder.h"
+
+namespace textonbench::synth_test {
+
+TEST(SynthTest, ALargeWindowIsDrawnInBandsOfOneField) {
+  const TemporaryFolder folder;
+  Exemplar exemplar{.name = "gray", .pixels = Image({24, 20}, 1), .sha256 = ""};
+  fill_normal(Stream(Seed{5}), 0, 0, exemplar.pixels.row(0, 7));
+  fill_normal(Stream(Seed{5}), 1, 0, exemplar.pixels.row(0, 12));
+  write_image(exemplar.pixels, folder.path() / "gray.exr");
+  const Outcome outcome = run_program(
+      {"synth", "dsn", "gray.exr", "-p", "component=raw", "-p", "mni=3", "--size", "16448x1024", "-o", "large.exr"},
+      {folder.path()});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Image large = read_image(folder.path() / "large.exr").image;
+  ASSERT_EQ(large.extent(), (Extent{16448, 1024}));
+
+  const MethodEntry& dsn = find_method("dsn");
+  const Params params(dsn.params, {{"component", std::string("raw")}, {"mni", 3.0}});
+  const std::unique_ptr<Model> model = dsn.analyze({exemplar}, params, analysis_seed(1));
+  const int top = 240;  // across the border of two bands
+  const Image window =
+      model->synthesize({.size = {300, 40}, .origin = {16000, static_cast<double>(top)}}, sample_seed(1, 0));
+  double variance = 0;
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 300; ++x) {
+      ASSERT_NEAR(large.at(0, 16000 + x, top + y), window.at(0, x, y), 1e-4) << x << ' ' << y;
+      variance += window.at(0, x, y) * window.at(0, x, y) / 12000;
+    }
+  }
+  EXPECT_GT(variance, 0.01);
+}
+
+}  // namespace textonbench::synth_test
