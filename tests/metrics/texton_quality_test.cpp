@@ -103,7 +103,7 @@ TEST_F(TextonQuality, PatchesOfSplinesTendToTheirOwnGaussianLimit) {
       for (std::uint64_t seed = 0; seed < 8; ++seed) samples.push_back(model->synthesize(domain, Seed{seed}));
       return measure_samples(*metric.of_limit(*model, domain, Seed{1}), samples, domain).value;
     };
-    const double limit = of(3000);
+    const double limit = of(1000);
     EXPECT_LT(limit, 0.02) << order;
     EXPECT_GT(of(1), 2 * limit) << order;
   }
