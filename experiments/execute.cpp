@@ -185,13 +185,14 @@ class Execution {
     const auto statistic = metric.of_limit(*model_, domain_, derive(part("metric"), metric.name));
     if (statistic == nullptr) return std::nullopt;
     MetricValue value = measure_samples(*statistic, samples_, domain_);
-    const std::unique_ptr<Model> limit = gaussian_limit(*model_);
-    std::vector<Image> floor_samples;
-    floor_samples.reserve(static_cast<std::size_t>(spec_.samples));
-    for (int i = 0; i < spec_.samples; ++i) {
-      floor_samples.push_back(limit->synthesize(domain_, derive(part("limit"), static_cast<std::uint64_t>(i))));
+    if (const std::unique_ptr<Model> limit = gaussian_limit(*model_)) {
+      std::vector<Image> floor_samples;
+      floor_samples.reserve(static_cast<std::size_t>(spec_.samples));
+      for (int i = 0; i < spec_.samples; ++i) {
+        floor_samples.push_back(limit->synthesize(domain_, derive(part("limit"), static_cast<std::uint64_t>(i))));
+      }
+      value.floor = measure_samples(*statistic, floor_samples, domain_).value;
     }
-    value.floor = measure_samples(*statistic, floor_samples, domain_).value;
     return value;
   }
 

@@ -90,6 +90,8 @@ constexpr std::array entries{
                  [](const PictureSource& s) { return phase_picture(s.target.exemplar.pixels); }},
     PictureEntry{"sample_modulus", "Modulus of the sample",
                  [](const PictureSource& s) { return modulus_picture(sample<0>(s)); }},
+    PictureEntry{"mean_modulus", "Modulus of the samples",
+                 [](const PictureSource& s) { return mean_modulus_picture(s.samples); }},
     PictureEntry{"texton", "Texton", texton_picture},
     PictureEntry{"sample_phase", "Phase of the sample",
                  [](const PictureSource& s) { return phase_picture(sample<0>(s)); }},

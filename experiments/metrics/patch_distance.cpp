@@ -249,9 +249,14 @@ std::unique_ptr<SampleMetric> patch_distance(const Target& target, const Domain&
 
 std::unique_ptr<SampleMetric> limit_patch_distance(const Model& model, const Domain& domain, Seed seed) {
   const Gaussian* limit = model.gaussian();
-  if (model.texton() == nullptr || limit == nullptr) return nullptr;
-  return std::make_unique<PatchDistance>(
-      limit->mean(), LagWindow(*limit, model.texton()->extent(), domain, {longest_lag, longest_lag}), domain, seed);
+  const SplineTexton* spline = model.spline_texton();
+  const Texton* texton = spline != nullptr ? &spline->coefficients : model.texton();
+  if (texton == nullptr || limit == nullptr) return nullptr;
+  // The covariance of a B-spline of order n and its mirror image reaches n further than that of its coefficients.
+  const int order = spline != nullptr ? spline->order : 0;
+  const Extent reach{texton->extent().width + order, texton->extent().height + order};
+  return std::make_unique<PatchDistance>(limit->mean(), LagWindow(*limit, reach, domain, {longest_lag, longest_lag}),
+                                         domain, seed);
 }
 
 }  // namespace textonbench

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 namespace textonbench {
@@ -15,25 +16,38 @@ std::vector<double> cosines(int n) {
   return table;
 }
 
-/// Value of each centered full-spectrum bin, frequency zero at (W / 2, H / 2).
+/// Value of each bin of a half spectrum, or of its mirror image, frequency zero at (W / 2, H / 2).
 template <class Value>
-Image centered_picture(const Image& u, const Value& value) {
-  const Spectrum s = forward_fft(u);
-  Image picture(u.extent(), u.channels());
-  const int w = u.width();
-  const int h = u.height();
-  for (int c = 0; c < u.channels(); ++c) {
+Image centered_picture(Extent size, int channels, const Value& value) {
+  Image picture(size, channels);
+  const int w = size.width;
+  const int h = size.height;
+  for (int c = 0; c < channels; ++c) {
     for (int y = 0; y < h; ++y) {
       const int ky = (y - h / 2 + h) % h;
       for (int x = 0; x < w; ++x) {
         const int kx = (x - w / 2 + w) % w;
-        const bool stored = kx < s.columns();
-        const std::complex<float> bin = stored ? s.at(c, kx, ky) : std::conj(s.at(c, w - kx, (h - ky) % h));
-        picture.at(c, x, y) = value(bin, kx == 0 && ky == 0);
+        const bool mirrored = kx > w / 2;
+        picture.at(c, x, y) = mirrored ? value(c, w - kx, (h - ky) % h, mirrored) : value(c, kx, ky, mirrored);
       }
     }
   }
   return picture;
+}
+
+/// log10 of a half spectrum of power below its largest value, over five decades.
+Image power_picture(const Image& power, Extent size) {
+  float largest = 0;
+  for (int c = 0; c < power.channels(); ++c) {
+    for (int y = 0; y < power.height(); ++y) {
+      largest = std::max(largest, std::ranges::max(power.row(c, y)));
+    }
+  }
+  constexpr double decades = 5;
+  return centered_picture(size, power.channels(), [&](int c, int kx, int ky, bool) {
+    const double relative = largest > 0 ? double{power.at(c, kx, ky)} / double{largest} : 0;
+    return static_cast<float>(std::clamp(1 + std::log10(std::max(relative, 1e-30)) / decades, 0.0, 1.0));
+  });
 }
 
 /// Jumps between opposite borders, on the border pixels; zero inside.
@@ -115,28 +129,26 @@ Image periodic_component(const Image& u) {
   return p;
 }
 
-Image modulus_picture(const Image& u) {
-  const Image power = periodogram(u);
-  float largest = 0;
-  for (int c = 0; c < power.channels(); ++c) {
-    for (int y = 0; y < power.height(); ++y) {
-      largest = std::max(largest, std::ranges::max(power.row(c, y)));
+Image modulus_picture(const Image& u) { return power_picture(periodogram(u), u.extent()); }
+
+Image mean_modulus_picture(std::span<const Image> images) {
+  Image sum = periodogram(periodic_component(images.front()));
+  for (const Image& image : images.subspan(1)) {
+    const Image power = periodogram(periodic_component(image));
+    for (int c = 0; c < sum.channels(); ++c) {
+      for (int y = 0; y < sum.height(); ++y) {
+        std::ranges::transform(sum.row(c, y), power.row(c, y), sum.row(c, y).begin(), std::plus<>());
+      }
     }
   }
-  const double scale = 1.0 / static_cast<double>(u.extent().area());
-  constexpr double decades = 5;
-  return centered_picture(u, [&](std::complex<float> bin, bool dc) {
-    if (dc || largest == 0) {
-      return 0.0F;
-    }
-    const double relative = static_cast<double>(std::norm(bin)) * scale / static_cast<double>(largest);
-    return static_cast<float>(std::clamp(1 + std::log10(std::max(relative, 1e-30)) / decades, 0.0, 1.0));
-  });
+  return power_picture(sum, images.front().extent());
 }
 
 Image phase_picture(const Image& u) {
-  return centered_picture(u, [](std::complex<float> bin, bool) {
-    return static_cast<float>(std::arg(bin) / (2 * std::numbers::pi) + 0.5);
+  const Spectrum s = forward_fft(u);
+  return centered_picture(u.extent(), u.channels(), [&](int c, int kx, int ky, bool mirrored) {
+    const float phase = std::arg(mirrored ? std::conj(s.at(c, kx, ky)) : s.at(c, kx, ky));
+    return static_cast<float>(phase / (2 * std::numbers::pi) + 0.5);
   });
 }
 

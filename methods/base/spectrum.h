@@ -1,6 +1,7 @@
 // Spectral analysis of one image.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "methods/base/fft.h"
@@ -23,6 +24,8 @@ Image periodic_component(const Image& u);
 /// log10 modulus of the centred spectrum, scaled to [0, 1] for display (frequency zero in the middle; the top 5 decades
 /// of power), and the phase arg û / 2π + 1/2 likewise. Same size and channels as u.
 Image modulus_picture(const Image& u);
+/// The same of the mean power of the periodic components of several images of one size.
+Image mean_modulus_picture(std::span<const Image> images);
 Image phase_picture(const Image& u);
 
 }  // namespace textonbench

@@ -141,4 +141,20 @@ TEST(SpectrumPictures, ShowAPlaneWaveWhereItIs) {
   EXPECT_NEAR(phase_picture(u).at(0, 16 + 5, 12 + 3), 0.5, 1e-4);
 }
 
+TEST(SpectrumPictures, TheMeanOfTwoWavesShowsBoth) {
+  Image wave({32, 24}, 1), faint({32, 24}, 1);
+  for (int y = 0; y < 24; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      wave.at(0, x, y) = static_cast<float>(0.5 + 0.2 * std::cos(2 * std::numbers::pi * 4.0 * x / 32));
+      faint.at(0, x, y) = static_cast<float>(0.5 + 0.02 * std::cos(2 * std::numbers::pi * 6.0 * y / 24));
+    }
+  }
+  const std::vector<Image> images{wave, faint};
+  const Image mean = mean_modulus_picture(images);
+  EXPECT_FLOAT_EQ(mean.at(0, 16 + 4, 12), 1);
+  EXPECT_FLOAT_EQ(mean.at(0, 16 - 4, 12), 1);
+  EXPECT_NEAR(mean.at(0, 16, 12 + 6), 0.6, 0.03) << "power a hundred times less: two decades of five";
+  EXPECT_EQ(mean.at(0, 16, 12), 0) << "means are left out";
+}
+
 }  // namespace textonbench::spectrum_test

@@ -90,6 +90,25 @@ TEST_F(TextonQuality, PatchesOfTheGaussianLimitScoreTheFloorWhateverTheTexton) {
   EXPECT_EQ(metric.of_limit(*fit("adsn", {}), domain_, Seed{1}), nullptr);
 }
 
+TEST_F(TextonQuality, PatchesOfSplinesTendToTheirOwnGaussianLimit) {
+  const Domain domain{.size = {160, 160}};
+  const MetricEntry& metric = find_metric("limit_patch_distance");
+  for (const int order : {0, 1, 3}) {
+    const auto of = [&](double mni) {
+      const auto model = fit("texton_noise", {{"support", std::int64_t{5}},
+                                              {"order", std::int64_t{order}},
+                                              {"impacts", std::string("poisson")},
+                                              {"mni", mni}});
+      std::vector<Image> samples;
+      for (std::uint64_t seed = 0; seed < 8; ++seed) samples.push_back(model->synthesize(domain, Seed{seed}));
+      return measure_samples(*metric.of_limit(*model, domain, Seed{1}), samples, domain).value;
+    };
+    const double limit = of(1000);
+    EXPECT_LT(limit, 0.02) << order;
+    EXPECT_GT(of(1), 2 * limit) << order;
+  }
+}
+
 TEST_F(TextonQuality, OfSplinesIsThatOfTheirNoise) {
   const std::map<std::string, ParamValue> support{{"support", std::int64_t{9}}};
   const auto sot = fit("sot", support);
