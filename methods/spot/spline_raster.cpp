@@ -1,11 +1,13 @@
 #include "methods/spot/spline_raster.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "methods/base/bspline.h"
 #include "methods/base/convolution.h"
 #include "methods/base/parallel.h"
 #include "methods/spot/spline_place.h"
+#include "methods/spot/spline_tile.h"
 
 namespace textonbench {
 namespace {
@@ -13,18 +15,12 @@ namespace {
 /// Rows that one thread sums at a time: with the width of a texton they stay in the L1 cache.
 constexpr int raster_band = 32;
 
-/// Floats of a cache line.
-constexpr int raster_line = 16;
-using RasterLine = float __attribute__((vector_size(raster_line * sizeof(float)), may_alias));
-using KernelLine = float __attribute__((vector_size(raster_line * sizeof(float)), aligned(alignof(float)), may_alias));
-
 /// An impact whose first taps are pixels (x + column, y + row) of the raster.
 struct RasterImpact {
   std::int64_t x = 0;
   std::int64_t y = 0;
   int kernel = 0;
-  float wx[max_bspline_order + 1] = {};
-  float wy[max_bspline_order + 1] = {};
+  TapWeights weights;  ///< those along y times the weight of the impact
 };
 
 /// Impacts of one row of cells, and the rows [first, end) of the raster that they reach.
@@ -55,10 +51,10 @@ void weights_of_order(int order, float t, float* weights) {
 RasterImpact place_impact(int order, PlanePoint origin, const PlaneImpact& impact) {
   const std::int64_t dx = origin.x + tap_offset(order) - impact.x;
   const std::int64_t dy = origin.y + tap_offset(order) - impact.y;
-  RasterImpact placed{-(dx >> plane_bits), -(dy >> plane_bits), impact.kernel, {}, {}};
-  weights_of_order(order, knot_position(dx), placed.wx);
-  weights_of_order(order, knot_position(dy), placed.wy);
-  for (float& w : placed.wx) {
+  RasterImpact placed{-(dx >> plane_bits), -(dy >> plane_bits), impact.kernel, {}};
+  weights_of_order(order, knot_position(dx), placed.weights.x);
+  weights_of_order(order, knot_position(dy), placed.weights.y);
+  for (float& w : placed.weights.y) {
     w *= impact.weight;
   }
   return placed;
@@ -101,89 +97,49 @@ void visit_band(std::span<const RasterStrip> strips, std::int64_t top, std::int6
   }
 }
 
-/// Rows of a framed kernel from the first tap of the first output row on, and of the output.
-struct LineRows {
+/// Tiles [begin, end) of a row that an impact reaches, and its tap under the first pixel of tile 0.
+struct TileSpan {
+  std::int64_t begin;
+  std::int64_t end;
   const float* from;
-  std::ptrdiff_t from_stride;
-  float* to;
-  std::ptrdiff_t to_stride;
-  std::int64_t count;
+  const TapWeights* weights;
 };
 
-/// to(x, y) += Σ_j wy_j Σ_i wx_i from(x + i, y + j) in one line: rows are blended along x once and kept while the
-/// output rows that they are taps of pass by.
-template <int order>
-[[gnu::always_inline]] inline void add_line(const LineRows& rows, const float* wx, const float* wy) {
-  RasterLine blends[order + 1];
-  const float* from = rows.from;
-  for (int j = 0; j < order; ++j) {
-    blends[j] = wx[0] * *reinterpret_cast<const KernelLine*>(from);
-    for (int i = 1; i <= order; ++i) {
-      blends[j] += wx[i] * *reinterpret_cast<const KernelLine*>(from + i);
-    }
-    from += rows.from_stride;
-  }
-  float* to = rows.to;
-  for (std::int64_t y = 0; y < rows.count; ++y) {
-    blends[order] = wx[0] * *reinterpret_cast<const KernelLine*>(from);
-    for (int i = 1; i <= order; ++i) {
-      blends[order] += wx[i] * *reinterpret_cast<const KernelLine*>(from + i);
-    }
-    RasterLine sum = wy[0] * blends[0];
-    for (int j = 1; j <= order; ++j) {
-      sum += wy[j] * blends[j];
-    }
-    *reinterpret_cast<RasterLine*>(to) += sum;
-    for (int j = 0; j < order; ++j) {
-      blends[j] = blends[j + 1];
-    }
-    from += rows.from_stride;
-    to += rows.to_stride;
-  }
-}
+/// Visits tile by tile, those of a tile in the order of `spans`.
+struct TileVisits {
+  std::vector<TileVisit> visits;
+  std::vector<std::size_t> first;
 
-/// add_line in each of `lines` lines.
-template <int order>
-[[gnu::always_inline]] inline void add_lines(LineRows rows, std::int64_t lines, const float* wx, const float* wy) {
-  for (std::int64_t i = 0; i < lines; ++i) {
-    add_line<order>(rows, wx, wy);
-    rows.from += raster_line;
-    rows.to += raster_line;
+  TileVisits(std::span<const TileSpan> spans, std::size_t tiles) : first(tiles + 1) {
+    for (const TileSpan& span : spans) {
+      for (std::int64_t tile = span.begin; tile < span.end; ++tile) {
+        ++first[static_cast<std::size_t>(tile) + 1];
+      }
+    }
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    visits.resize(first.back());
+    std::vector<std::size_t> next = first;
+    for (const TileSpan& span : spans) {
+      for (std::int64_t tile = span.begin; tile < span.end; ++tile) {
+        visits[next[static_cast<std::size_t>(tile)]++] = {span.from + tile * tile_width, span.weights};
+      }
+    }
   }
-}
-
-__attribute__((target_clones("default", "avx2", "avx512f"))) void add_kernel(int order, const LineRows& rows,
-                                                                             std::int64_t lines, const float* wx,
-                                                                             const float* wy) {
-  switch (order) {
-    case 0:
-      return add_lines<0>(rows, lines, wx, wy);
-    case 1:
-      return add_lines<1>(rows, lines, wx, wy);
-    case 2:
-      return add_lines<2>(rows, lines, wx, wy);
-    case 3:
-      return add_lines<3>(rows, lines, wx, wy);
-    case 4:
-      return add_lines<4>(rows, lines, wx, wy);
-    default:
-      return add_lines<5>(rows, lines, wx, wy);
-  }
-}
+};
 
 }  // namespace
 
 std::vector<Image> frame_coefficients(const SplineTexton& texton, double scale) {
-  const int left = raster_line + texton.order;
+  const int left = tile_width - 1;
+  const int top = tile_height(texton.order) - 1 + texton.order;
   const auto [width, height] = texton.coefficients.extent();
   std::vector<Image> framed;
   framed.reserve(texton.coefficients.kernels.size());
   for (const Image& kernel : texton.coefficients.kernels) {
-    Image& image =
-        framed.emplace_back(Extent{width + 2 * left, height + 2 * texton.order}, texton.coefficients.channels());
+    Image& image = framed.emplace_back(Extent{width + 2 * left, height + 2 * top}, texton.coefficients.channels());
     for (int c = 0; c < kernel.channels(); ++c) {
       for (int y = 0; y < height; ++y) {
-        std::ranges::transform(kernel.row(c, y), image.row(c, y + texton.order).begin() + left,
+        std::ranges::transform(kernel.row(c, y), image.row(c, y + top).begin() + left,
                                [scale](float v) { return static_cast<float>(scale * v); });
       }
     }
@@ -193,29 +149,34 @@ std::vector<Image> frame_coefficients(const SplineTexton& texton, double scale) 
 
 Image sum_by_impact(const SplineTexton& texton, std::span<const Image> framed, const RasterImpacts& impacts,
                     std::span<const float> start) {
-  const Extent kernel = reach(texton);
-  const std::vector<RasterStrip> strips = draw_strips(texton, impacts, kernel);
-  Image out = Image::uninitialized(impacts.size, texton.coefficients.channels());
-  const std::int64_t stride = out.row_stride();
-  parallel_for((impacts.size.height + raster_band - 1) / raster_band, [&](int band) {
-    const int top = band * raster_band;
-    const int bottom = std::min(top + raster_band, impacts.size.height);
+  const int order = texton.order;
+  const Extent kernel = texton.coefficients.extent();
+  const Extent size = impacts.size;
+  const std::vector<RasterStrip> strips = draw_strips(texton, impacts, reach(texton));
+  Image out = Image::uninitialized(size, texton.coefficients.channels());
+  const int tiles = (size.width + tile_width - 1) / tile_width + 1;
+  const int height = tile_height(order);
+  parallel_for((size.height + height - 1) / height, [&](int band) {
+    const int top = band * height;
+    std::vector<TileSpan> spans;
+    visit_band(strips, top, top + height, kernel.height + order,
+               [&](const RasterImpact& impact, std::int64_t, std::int64_t) {
+                 const std::int64_t left = impact.x + order;
+                 const std::int64_t right = std::min<std::int64_t>(left + kernel.width, size.width + order);
+                 if (left < right && right > 0) {
+                   const Image& image = framed[static_cast<std::size_t>(impact.kernel)];
+                   const std::int64_t row = top - impact.y + height - 1;
+                   spans.push_back({std::max<std::int64_t>(0, left) / tile_width, (right + tile_width - 1) / tile_width,
+                                    image.plane(0) + row * image.row_stride() + (tile_width - 1 - left),
+                                    &impact.weights});
+                 }
+               });
+    const TileVisits sorted(spans, static_cast<std::size_t>(tiles));
+    const Image& first = framed.front();
     for (int c = 0; c < out.channels(); ++c) {
-      for (int y = top; y < bottom; ++y) {
-        std::fill_n(out.row(c, y).data(), stride, start[static_cast<std::size_t>(c)]);
-      }
-      visit_band(strips, top, bottom, kernel.height, [&](const RasterImpact& impact, std::int64_t y, std::int64_t end) {
-        const Image& image = framed[static_cast<std::size_t>(impact.kernel)];
-        // Whole lines of the output, from the one with the first pixel in reach to the one with the last.
-        const std::int64_t left = std::max<std::int64_t>(0, impact.x) / raster_line * raster_line;
-        const std::int64_t right = std::min(stride, impact.x + kernel.width);
-        if (left < right) {
-          const float* from = image.row(c, static_cast<int>(y - impact.y)).data() + raster_line + (left - impact.x);
-          float* to = out.row(c, static_cast<int>(y)).data() + left;
-          add_kernel(texton.order, {from, image.row_stride(), to, stride, end - y},
-                     (right - left + raster_line - 1) / raster_line, impact.wx, impact.wy);
-        }
-      });
+      sum_tiles(order, {sorted.visits, sorted.first, first.row_stride()}, c * first.height() * first.row_stride(),
+                start[static_cast<std::size_t>(c)],
+                {out.row(c, top).data(), out.row_stride(), std::min(height, size.height - top)});
     }
   });
   return out;
@@ -241,9 +202,9 @@ Image sum_by_convolution(const SplineTexton& texton, double scale, const RasterI
           const std::int64_t left = impact.x + width - 1;
           for (; y < end; ++y) {
             const auto row = field.row(0, static_cast<int>(y + height - 1));
-            const float weight = impact.wy[texton.order - (y - impact.y)];
+            const float weight = impact.weights.y[texton.order - (y - impact.y)];
             for (std::int64_t i = std::max<std::int64_t>(0, -left); i <= texton.order && left + i < size.width; ++i) {
-              row[static_cast<std::size_t>(left + i)] += weight * impact.wx[texton.order - i];
+              row[static_cast<std::size_t>(left + i)] += weight * impact.weights.x[texton.order - i];
             }
           }
         });
