@@ -154,29 +154,39 @@ Image sum_by_impact(const SplineTexton& texton, std::span<const Image> framed, c
   const Extent size = impacts.size;
   const std::vector<RasterStrip> strips = draw_strips(texton, impacts, reach(texton));
   Image out = Image::uninitialized(size, texton.coefficients.channels());
-  const int tiles = (size.width + tile_width - 1) / tile_width + 1;
+  const int tiles = (size.width + order + tile_width - 1) / tile_width;
   const int height = tile_height(order);
-  parallel_for((size.height + height - 1) / height, [&](int band) {
-    const int top = band * height;
-    std::vector<TileSpan> spans;
-    visit_band(strips, top, top + height, kernel.height + order,
-               [&](const RasterImpact& impact, std::int64_t, std::int64_t) {
-                 const std::int64_t left = impact.x + order;
-                 const std::int64_t right = std::min<std::int64_t>(left + kernel.width, size.width + order);
-                 if (left < right && right > 0) {
-                   const Image& image = framed[static_cast<std::size_t>(impact.kernel)];
-                   const std::int64_t row = top - impact.y + height - 1;
-                   spans.push_back({std::max<std::int64_t>(0, left) / tile_width, (right + tile_width - 1) / tile_width,
-                                    image.plane(0) + row * image.row_stride() + (tile_width - 1 - left),
-                                    &impact.weights});
-                 }
-               });
-    const TileVisits sorted(spans, static_cast<std::size_t>(tiles));
+  const int tile_rows = (size.height + height - 1) / height;
+  constexpr int group = 4;
+  parallel_for((tile_rows + group - 1) / group, [&](int band) {
+    std::vector<TileVisits> sorted;
+    const int end = std::min(tile_rows, (band + 1) * group);
+    for (int i = band * group; i < end; ++i) {
+      const int top = i * height;
+      std::vector<TileSpan> spans;
+      visit_band(strips, top, top + height, kernel.height + order,
+                 [&](const RasterImpact& impact, std::int64_t, std::int64_t) {
+                   const std::int64_t left = impact.x + order;
+                   const std::int64_t right = std::min<std::int64_t>(left + kernel.width, size.width + order);
+                   if (left < right && right > 0) {
+                     const Image& image = framed[static_cast<std::size_t>(impact.kernel)];
+                     const std::int64_t row = top - impact.y + height - 1;
+                     spans.push_back({std::max<std::int64_t>(0, left) / tile_width, (right + tile_width - 1) / tile_width,
+                                      image.plane(0) + row * image.row_stride() + (tile_width - 1 - left),
+                                      &impact.weights});
+                   }
+                 });
+      sorted.emplace_back(spans, static_cast<std::size_t>(tiles));
+    }
     const Image& first = framed.front();
     for (int c = 0; c < out.channels(); ++c) {
-      sum_tiles(order, {sorted.visits, sorted.first, first.row_stride()}, c * first.height() * first.row_stride(),
-                start[static_cast<std::size_t>(c)],
-                {out.row(c, top).data(), out.row_stride(), std::min(height, size.height - top)});
+      for (int i = band * group; i < end; ++i) {
+        const int top = i * height;
+        const TileVisits& v = sorted[static_cast<std::size_t>(i - band * group)];
+        sum_tiles(order, {v.visits, v.first, first.row_stride()}, c * first.height() * first.row_stride(),
+                  start[static_cast<std::size_t>(c)],
+                  {out.row(c, top).data(), out.row_stride(), std::min(height, size.height - top)});
+      }
     }
   });
   return out;

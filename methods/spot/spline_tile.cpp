@@ -8,27 +8,26 @@ namespace {
 
 using TileLine = float __attribute__((vector_size(tile_width * sizeof(float)), may_alias));
 using LooseLine = float __attribute__((vector_size(tile_width * sizeof(float)), aligned(alignof(float)), may_alias));
+using LineIndex = int __attribute__((vector_size(tile_width * sizeof(int))));
 
-/// Sums of two tiles side by side: s_i(x, y) = Σ_visits wx_i g(x, y) for i < n, and s_n = Σ_visits g, where
-/// g(x, y) = Σ_j wy_j from(x, y + j).
+/// Sums s_i(x, y) = Σ_visits wx_i g(x, y), 1 <= i <= n, of a tile, where g(x, y) = Σ_j wy_j from(x, y + j).
 template <int order>
 struct TileSums {
-  alignas(64) float rows[tile_height(order)][order + 1][2 * tile_width] = {};
+  TileLine rows[tile_height(order)][order + 1] = {};
 };
 
-/// Sums of a tile, to the right-hand side. One load, and 2 n + 1 multiplications and additions a row and visit.
+/// out(x, y) = start + Σ_i s_i(x + i, y), with s_i of the tile and of `right`, the tile to its right, which becomes this
+/// one. As Σ_i wx_i = 1, s_n = Σ_visits g − Σ_{i < n} s_i: a visit takes 2 n + 1 multiplications, as many additions, and
+/// one load a row.
 template <int order>
-[[gnu::always_inline]] inline void sum_visits(std::span<const TileVisit> visits, std::ptrdiff_t offset,
-                                              std::ptrdiff_t stride, float start, TileSums<order>& to) {
+[[gnu::always_inline]] inline void sum_tile(std::span<const TileVisit> visits, std::ptrdiff_t offset,
+                                            std::ptrdiff_t stride, float start, TileSums<order>& right,
+                                            const TileRowOutput& out) {
   constexpr int height = tile_height(order);
-  TileLine sums[height][order + 1];
+  TileLine sums[height][order + 1] = {};
 #pragma GCC unroll 16
   for (int y = 0; y < height; ++y) {
-#pragma GCC unroll 8
-    for (int i = 0; i < order; ++i) {
-      sums[y][i] = TileLine{};
-    }
-    sums[y][order] = TileLine{} + start;
+    sums[y][order] += start;
   }
   for (const TileVisit& visit : visits) {
     const float* from = visit.from + offset;
@@ -58,45 +57,35 @@ template <int order>
       }
     }
   }
+  const LineIndex columns = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 #pragma GCC unroll 16
   for (int y = 0; y < height; ++y) {
 #pragma GCC unroll 8
-    for (int i = 0; i <= order; ++i) {
-      *reinterpret_cast<TileLine*>(to.rows[y][i] + tile_width) = sums[y][i];
-    }
-  }
-}
-
-/// The weights along x have the sum 1: Σ_i wx_i g(x + i) = g(x + n) + Σ_{i < n} wx_i (g(x + i) − g(x + n)), of the left
-/// tile.
-template <int order>
-[[gnu::always_inline]] inline void blend_sums(const TileSums<order>& sums, const TileRowOutput& out) {
-  
-  for (int y = 0; y < out.rows; ++y) {
-    TileLine blend = *reinterpret_cast<const LooseLine*>(sums.rows[y][order] + order);
     for (int i = 0; i < order; ++i) {
-      blend += *reinterpret_cast<const LooseLine*>(sums.rows[y][i] + i) - *reinterpret_cast<const LooseLine*>(sums.rows[y][i] + order);
+      sums[y][order] -= sums[y][i];
     }
-    *reinterpret_cast<TileLine*>(out.data + y * out.stride) = blend;
+    TileLine total = sums[y][0];
+#pragma GCC unroll 8
+    for (int i = 1; i <= order; ++i) {
+      total += __builtin_shuffle(sums[y][i], right.rows[y][i], columns + i);
+      right.rows[y][i] = sums[y][i];
+    }
+    if (y < out.rows) {
+      *reinterpret_cast<TileLine*>(out.data + y * out.stride) = total;
+    }
   }
 }
 
 template <int order>
 [[gnu::always_inline]] inline void sum_tiles_of(const TileRow& tiles, std::ptrdiff_t offset, float start,
                                                 TileRowOutput out) {
-  TileSums<order> sums;
-  for (std::size_t i = 0; i + 1 < tiles.first.size(); ++i) {
-    for (auto& row : sums.rows) {
-      for (float* sum : row) {
-        *reinterpret_cast<TileLine*>(sum) = *reinterpret_cast<TileLine*>(sum + tile_width);
-      }
-    }
-    sum_visits<order>(tiles.visits.subspan(tiles.first[i], tiles.first[i + 1] - tiles.first[i]), offset, tiles.stride,
-                      start, sums);
-    if (i > 0) {
-      blend_sums<order>(sums, out);
-      out.data += tile_width;
-    }
+  TileSums<order> right;
+  std::size_t i = tiles.first.size() - 1;
+  out.data += static_cast<std::ptrdiff_t>(i) * tile_width;
+  for (; i > 0; --i) {
+    out.data -= tile_width;
+    const std::size_t first = tiles.first[i - 1];
+    sum_tile<order>(tiles.visits.subspan(first, tiles.first[i] - first), offset, tiles.stride, start, right, out);
   }
 }
 
