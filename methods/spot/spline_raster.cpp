@@ -12,15 +12,20 @@
 namespace textonbench {
 namespace {
 
-/// Rows that one thread sums at a time: with the width of a texton they stay in the L1 cache.
+/// Rows that one thread splats impacts to at a time.
 constexpr int raster_band = 32;
+
+/// Rows of tiles that one thread sums, channel after channel: a channel of a large kernel stays in the L2 cache under
+/// them.
+constexpr int band_tile_rows = 4;
 
 /// An impact whose first taps are pixels (x + column, y + row) of the raster.
 struct RasterImpact {
   std::int64_t x = 0;
   std::int64_t y = 0;
   int kernel = 0;
-  TapWeights weights;  ///< those along y times the weight of the impact
+  bool negative = false;
+  TapWeights weights;
 };
 
 /// Impacts of one row of cells, and the rows [first, end) of the raster that they reach.
@@ -51,12 +56,9 @@ void weights_of_order(int order, float t, float* weights) {
 RasterImpact place_impact(int order, PlanePoint origin, const PlaneImpact& impact) {
   const std::int64_t dx = origin.x + tap_offset(order) - impact.x;
   const std::int64_t dy = origin.y + tap_offset(order) - impact.y;
-  RasterImpact placed{-(dx >> plane_bits), -(dy >> plane_bits), impact.kernel, {}};
+  RasterImpact placed{-(dx >> plane_bits), -(dy >> plane_bits), impact.kernel, impact.weight < 0, {}};
   weights_of_order(order, knot_position(dx), placed.weights.x);
   weights_of_order(order, knot_position(dy), placed.weights.y);
-  for (float& w : placed.weights.y) {
-    w *= impact.weight;
-  }
   return placed;
 }
 
@@ -105,42 +107,69 @@ struct TileSpan {
   const TapWeights* weights;
 };
 
-/// Visits tile by tile, those of a tile in the order of `spans`.
+/// Visits tile by tile, those of a tile in the order of the spans.
 struct TileVisits {
   std::vector<TileVisit> visits;
   std::vector<std::size_t> first;
+};
 
-  TileVisits(std::span<const TileSpan> spans, std::size_t tiles) : first(tiles + 1) {
-    for (const TileSpan& span : spans) {
-      for (std::int64_t tile = span.begin; tile < span.end; ++tile) {
-        ++first[static_cast<std::size_t>(tile) + 1];
-      }
-    }
-    std::partial_sum(first.begin(), first.end(), first.begin());
-    visits.resize(first.back());
-    std::vector<std::size_t> next = first;
-    for (const TileSpan& span : spans) {
-      for (std::int64_t tile = span.begin; tile < span.end; ++tile) {
-        visits[next[static_cast<std::size_t>(tile)]++] = {span.from + tile * tile_width, span.weights};
-      }
+TileVisits sort_by_tile(std::span<const TileSpan> spans, std::size_t tiles) {
+  TileVisits sorted{{}, std::vector<std::size_t>(tiles + 1)};
+  for (const TileSpan& span : spans) {
+    for (std::int64_t tile = span.begin; tile < span.end; ++tile) {
+      ++sorted.first[static_cast<std::size_t>(tile) + 1];
     }
   }
-};
+  std::partial_sum(sorted.first.begin(), sorted.first.end(), sorted.first.begin());
+  sorted.visits.resize(sorted.first.back());
+  std::vector<std::size_t> next = sorted.first;
+  for (const TileSpan& span : spans) {
+    for (std::int64_t tile = span.begin; tile < span.end; ++tile) {
+      sorted.visits[next[static_cast<std::size_t>(tile)]++] = {span.from + tile * tile_width, span.weights};
+    }
+  }
+  return sorted;
+}
+
+/// Visits of the tiles whose first row is pixel row `top`, in the first channel.
+TileVisits visit_tiles(const SplineTexton& texton, std::span<const Image> framed, std::span<const RasterStrip> strips,
+                       int width, int top) {
+  const int order = texton.order;
+  const int height = tile_height(order);
+  const Extent kernel = texton.coefficients.extent();
+  std::vector<TileSpan> spans;
+  visit_band(
+      strips, top, top + height, kernel.height + order, [&](const RasterImpact& impact, std::int64_t, std::int64_t) {
+        // Columns whose first tap is a coefficient, and which one of the pixels takes.
+        const std::int64_t left = impact.x + order;
+        const std::int64_t right = std::min<std::int64_t>(left + kernel.width, width + order);
+        if (left < right && right > 0) {
+          const Image& image =
+              framed[static_cast<std::size_t>(impact.kernel) + (impact.negative ? framed.size() / 2 : 0)];
+          const std::int64_t row = top - impact.y + height - 1;
+          spans.push_back({std::max<std::int64_t>(0, left) / tile_width, (right + tile_width - 1) / tile_width,
+                           image.plane(0) + row * image.row_stride() + (tile_width - 1 - left), &impact.weights});
+        }
+      });
+  return sort_by_tile(spans, static_cast<std::size_t>((width + order + tile_width - 1) / tile_width));
+}
 
 }  // namespace
 
-std::vector<Image> frame_coefficients(const SplineTexton& texton, double scale) {
+std::vector<Image> frame_coefficients(const SplineTexton& texton, double scale, bool both_signs) {
   const int left = tile_width - 1;
   const int top = tile_height(texton.order) - 1 + texton.order;
   const auto [width, height] = texton.coefficients.extent();
   std::vector<Image> framed;
-  framed.reserve(texton.coefficients.kernels.size());
-  for (const Image& kernel : texton.coefficients.kernels) {
-    Image& image = framed.emplace_back(Extent{width + 2 * left, height + 2 * top}, texton.coefficients.channels());
-    for (int c = 0; c < kernel.channels(); ++c) {
-      for (int y = 0; y < height; ++y) {
-        std::ranges::transform(kernel.row(c, y), image.row(c, y + top).begin() + left,
-                               [scale](float v) { return static_cast<float>(scale * v); });
+  framed.reserve(2 * texton.coefficients.kernels.size());
+  for (const double factor : both_signs ? std::vector{scale, -scale} : std::vector{scale}) {
+    for (const Image& kernel : texton.coefficients.kernels) {
+      Image& image = framed.emplace_back(Extent{width + 2 * left, height + 2 * top}, texton.coefficients.channels());
+      for (int c = 0; c < kernel.channels(); ++c) {
+        for (int y = 0; y < height; ++y) {
+          std::ranges::transform(kernel.row(c, y), image.row(c, y + top).begin() + left,
+                                 [factor](float v) { return static_cast<float>(factor * v); });
+        }
       }
     }
   }
@@ -149,43 +178,26 @@ std::vector<Image> frame_coefficients(const SplineTexton& texton, double scale) 
 
 Image sum_by_impact(const SplineTexton& texton, std::span<const Image> framed, const RasterImpacts& impacts,
                     std::span<const float> start) {
-  const int order = texton.order;
-  const Extent kernel = texton.coefficients.extent();
-  const Extent size = impacts.size;
+  const int height = tile_height(texton.order);
+  const int tile_rows = (impacts.size.height + height - 1) / height;
+  const std::ptrdiff_t stride = framed.front().row_stride();
   const std::vector<RasterStrip> strips = draw_strips(texton, impacts, reach(texton));
-  Image out = Image::uninitialized(size, texton.coefficients.channels());
-  const int tiles = (size.width + order + tile_width - 1) / tile_width;
-  const int height = tile_height(order);
-  const int tile_rows = (size.height + height - 1) / height;
-  constexpr int group = 4;
-  parallel_for((tile_rows + group - 1) / group, [&](int band) {
-    std::vector<TileVisits> sorted;
-    const int end = std::min(tile_rows, (band + 1) * group);
-    for (int i = band * group; i < end; ++i) {
-      const int top = i * height;
-      std::vector<TileSpan> spans;
-      visit_band(strips, top, top + height, kernel.height + order,
-                 [&](const RasterImpact& impact, std::int64_t, std::int64_t) {
-                   const std::int64_t left = impact.x + order;
-                   const std::int64_t right = std::min<std::int64_t>(left + kernel.width, size.width + order);
-                   if (left < right && right > 0) {
-                     const Image& image = framed[static_cast<std::size_t>(impact.kernel)];
-                     const std::int64_t row = top - impact.y + height - 1;
-                     spans.push_back({std::max<std::int64_t>(0, left) / tile_width, (right + tile_width - 1) / tile_width,
-                                      image.plane(0) + row * image.row_stride() + (tile_width - 1 - left),
-                                      &impact.weights});
-                   }
-                 });
-      sorted.emplace_back(spans, static_cast<std::size_t>(tiles));
+  Image out = Image::uninitialized(impacts.size, texton.coefficients.channels());
+  parallel_for((tile_rows + band_tile_rows - 1) / band_tile_rows, [&](int band) {
+    const int first = band * band_tile_rows;
+    const int end = std::min(first + band_tile_rows, tile_rows);
+    std::vector<TileVisits> rows;
+    rows.reserve(band_tile_rows);
+    for (int i = first; i < end; ++i) {
+      rows.push_back(visit_tiles(texton, framed, strips, impacts.size.width, i * height));
     }
-    const Image& first = framed.front();
     for (int c = 0; c < out.channels(); ++c) {
-      for (int i = band * group; i < end; ++i) {
-        const int top = i * height;
-        const TileVisits& v = sorted[static_cast<std::size_t>(i - band * group)];
-        sum_tiles(order, {v.visits, v.first, first.row_stride()}, c * first.height() * first.row_stride(),
-                  start[static_cast<std::size_t>(c)],
-                  {out.row(c, top).data(), out.row_stride(), std::min(height, size.height - top)});
+      for (int i = first; i < end; ++i) {
+        const TileVisits& tiles = rows[static_cast<std::size_t>(i - first)];
+        sum_tiles(
+            texton.order, {tiles.visits, tiles.first, stride}, c * framed.front().height() * stride,
+            start[static_cast<std::size_t>(c)],
+            {out.row(c, i * height).data(), out.row_stride(), std::min(height, impacts.size.height - i * height)});
       }
     }
   });
@@ -212,7 +224,8 @@ Image sum_by_convolution(const SplineTexton& texton, double scale, const RasterI
           const std::int64_t left = impact.x + width - 1;
           for (; y < end; ++y) {
             const auto row = field.row(0, static_cast<int>(y + height - 1));
-            const float weight = impact.weights.y[texton.order - (y - impact.y)];
+            const float share = impact.weights.y[texton.order - (y - impact.y)];
+            const float weight = impact.negative ? -share : share;
             for (std::int64_t i = std::max<std::int64_t>(0, -left); i <= texton.order && left + i < size.width; ++i) {
               row[static_cast<std::size_t>(left + i)] += weight * impact.weights.x[texton.order - i];
             }

@@ -1,6 +1,5 @@
 #include "methods/spot/spline_tile.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace textonbench {
@@ -9,6 +8,18 @@ namespace {
 using TileLine = float __attribute__((vector_size(tile_width * sizeof(float)), may_alias));
 using LooseLine = float __attribute__((vector_size(tile_width * sizeof(float)), aligned(alignof(float)), may_alias));
 using LineIndex = int __attribute__((vector_size(tile_width * sizeof(int))));
+/// sum += weight line, rounded once, as the fused instruction of a processor that has it and by a function otherwise.
+template <int... x>
+[[gnu::always_inline]] inline void add_product(float weight, const TileLine& line, TileLine& sum,
+                                               std::integer_sequence<int, x...>) {
+  const TileLine w = TileLine{} + weight;
+  const TileLine a = line;
+  const TileLine b = sum;
+  sum = TileLine{__builtin_fmaf(w[x], a[x], b[x])...};
+}
+[[gnu::always_inline]] inline void add_product(float weight, const TileLine& line, TileLine& sum) {
+  add_product(weight, line, sum, std::make_integer_sequence<int, tile_width>{});
+}
 
 /// Sums s_i(x, y) = Σ_visits wx_i g(x, y), 1 <= i <= n, of a tile, where g(x, y) = Σ_j wy_j from(x, y + j).
 template <int order>
@@ -16,9 +27,9 @@ struct TileSums {
   TileLine rows[tile_height(order)][order + 1] = {};
 };
 
-/// out(x, y) = start + Σ_i s_i(x + i, y), with s_i of the tile and of `right`, the tile to its right, which becomes this
-/// one. As Σ_i wx_i = 1, s_n = Σ_visits g − Σ_{i < n} s_i: a visit takes 2 n + 1 multiplications, as many additions, and
-/// one load a row.
+/// out(x, y) = start + Σ_i s_i(x + i, y), with s_i of the tile and of `right`, the tile to its right, which becomes
+/// this one. As the weights of an axis have the sum 1, g = from_n + Σ_{j < n} wy_j (from_j − from_n) and s_n = Σ_visits
+/// g − Σ_{i < n} s_i. So a visit takes, a row, one load, n + 1 additions and 2 n fused multiply-adds.
 template <int order>
 [[gnu::always_inline]] inline void sum_tile(std::span<const TileVisit> visits, std::ptrdiff_t offset,
                                             std::ptrdiff_t stride, float start, TileSums<order>& right,
@@ -41,14 +52,14 @@ template <int order>
 #pragma GCC unroll 16
     for (int y = 0; y < height; ++y, from += stride) {
       taps[order] = *reinterpret_cast<const LooseLine*>(from);
-      TileLine blend = wy[0] * taps[0];
+      TileLine blend = taps[order];
 #pragma GCC unroll 8
-      for (int j = 1; j <= order; ++j) {
-        blend += wy[j] * taps[j];
+      for (int j = 0; j < order; ++j) {
+        add_product(wy[j], taps[j] - taps[order], blend);
       }
 #pragma GCC unroll 8
       for (int i = 0; i < order; ++i) {
-        sums[y][i] += wx[i] * blend;
+        add_product(wx[i], blend, sums[y][i]);
       }
       sums[y][order] += blend;
 #pragma GCC unroll 8
@@ -78,22 +89,22 @@ template <int order>
 
 template <int order>
 [[gnu::always_inline]] inline void sum_tiles_of(const TileRow& tiles, std::ptrdiff_t offset, float start,
-                                                TileRowOutput out) {
+                                                const TileRowOutput& out) {
   TileSums<order> right;
-  std::size_t i = tiles.first.size() - 1;
-  out.data += static_cast<std::ptrdiff_t>(i) * tile_width;
-  for (; i > 0; --i) {
-    out.data -= tile_width;
-    const std::size_t first = tiles.first[i - 1];
-    sum_tile<order>(tiles.visits.subspan(first, tiles.first[i] - first), offset, tiles.stride, start, right, out);
+  for (std::size_t i = tiles.first.size() - 1; i-- > 0;) {
+    const auto x = static_cast<std::ptrdiff_t>(i) * tile_width;
+    const auto visits = tiles.visits.subspan(tiles.first[i], tiles.first[i + 1] - tiles.first[i]);
+    sum_tile<order>(visits, offset, tiles.stride, start, right,
+                    {out.data + x, out.stride, x < out.stride ? out.rows : 0});
   }
 }
 
 }  // namespace
 
-__attribute__((target_clones("default", "avx2", "avx512f"))) void sum_tiles(int order, const TileRow& tiles,
-                                                                            std::ptrdiff_t offset, float start,
-                                                                            const TileRowOutput& out) {
+__attribute__((target_clones("default", "arch=x86-64-v3", "avx512f"))) void sum_tiles(int order, const TileRow& tiles,
+                                                                                      std::ptrdiff_t offset,
+                                                                                      float start,
+                                                                                      const TileRowOutput& out) {
   switch (order) {
     case 0:
       return sum_tiles_of<0>(tiles, offset, start, out);

@@ -14,14 +14,14 @@ constexpr int tile_width = 16;
 /// Rows of a tile, so many that their sums fill the 32 registers of AVX-512.
 constexpr int tile_height(int order) { return order == 0 ? 16 : 24 / (order + 1); }
 
-/// Weights of an impact's taps, those along x of sum 1.
+/// Weights of an impact's taps along either axis, with the sum 1: the last one is never looked at.
 struct TapWeights {
   float x[max_bspline_order + 1] = {};
   float y[max_bspline_order + 1] = {};
 };
 
-/// An impact that reaches a tile: `from` is the tap under the tile's first pixel, in a kernel whose frame of zeros holds
-/// the rest of the tile.
+/// An impact that reaches a tile: `from` is the tap under the tile's first pixel, in a kernel whose frame of zeros
+/// holds the rest of the tile.
 struct TileVisit {
   const float* from;
   const TapWeights* weights;
@@ -34,15 +34,16 @@ struct TileRow {
   std::ptrdiff_t stride;  ///< of the kernels
 };
 
-/// Rows of an image that the tiles but the last one cover, whole lines.
+/// Rows of an image, in whole lines from the first tile on. A line needs the tile to its right too, if order > 0.
 struct TileRowOutput {
   float* data;
-  std::ptrdiff_t stride;
-  int rows;  ///< at most tile_height(order)
+  std::ptrdiff_t stride;  ///< floats, a multiple of tile_width: tiles beyond have no line
+  int rows;               ///< at most tile_height(order)
 };
 
-/// to(x, y) = start + Σ_visits Σ_j wy_j Σ_i wx_i from(x + i, y + j), `from` being moved by `offset`. The terms are added
-/// in their order, whatever the tile.
+/// out(x, y) = start + Σ_visits Σ_j wy_j Σ_i wx_i from(x + i, y + j), `from` being moved by `offset` floats. A visit
+/// adds in fused multiply-adds, one after the other: the bits depend neither on the tile nor on the processor. One that
+/// has no such instruction takes about a hundred times longer.
 void sum_tiles(int order, const TileRow& tiles, std::ptrdiff_t offset, float start, const TileRowOutput& out);
 
 }  // namespace textonbench
