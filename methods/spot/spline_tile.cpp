@@ -5,37 +5,54 @@
 namespace textonbench {
 namespace {
 
-using TileLine = float __attribute__((vector_size(tile_width * sizeof(float)), may_alias));
-using LooseLine = float __attribute__((vector_size(tile_width * sizeof(float)), aligned(alignof(float)), may_alias));
-using LineIndex = int __attribute__((vector_size(tile_width * sizeof(int))));
-/// sum += weight line, rounded once, as the fused instruction of a processor that has it and by a function otherwise.
-template <int... x>
-[[gnu::always_inline]] inline void add_product(float weight, const TileLine& line, TileLine& sum,
-                                               std::integer_sequence<int, x...>) {
-  const TileLine w = TileLine{} + weight;
-  const TileLine a = line;
-  const TileLine b = sum;
-  sum = TileLine{__builtin_fmaf(w[x], a[x], b[x])...};
-}
-[[gnu::always_inline]] inline void add_product(float weight, const TileLine& line, TileLine& sum) {
-  add_product(weight, line, sum, std::make_integer_sequence<int, tile_width>{});
-}
-
-/// Sums s_i(x, y) = Σ_visits wx_i g(x, y), 1 <= i <= n, of a tile, where g(x, y) = Σ_j wy_j from(x, y + j).
-template <int order>
-struct TileSums {
-  TileLine rows[tile_height(order)][order + 1] = {};
+/// Registers of floats, and the same anywhere in memory.
+struct WideLine {
+  static constexpr int lanes = 16;
+  using Floats = float __attribute__((vector_size(lanes * sizeof(float)), may_alias));
+  using Loose = float __attribute__((vector_size(lanes * sizeof(float)), aligned(alignof(float)), may_alias));
+  using Index = int __attribute__((vector_size(lanes * sizeof(int))));
+};
+struct NarrowLine {
+  static constexpr int lanes = 8;
+  using Floats = float __attribute__((vector_size(lanes * sizeof(float)), may_alias));
+  using Loose = float __attribute__((vector_size(lanes * sizeof(float)), aligned(alignof(float)), may_alias));
+  using Index = int __attribute__((vector_size(lanes * sizeof(int))));
 };
 
-/// out(x, y) = start + Σ_i s_i(x + i, y), with s_i of the tile and of `right`, the tile to its right, which becomes
-/// this one. As the weights of an axis have the sum 1, g = from_n + Σ_{j < n} wy_j (from_j − from_n) and s_n = Σ_visits
-/// g − Σ_{i < n} s_i. So a visit takes, a row, one load, n + 1 additions and 2 n fused multiply-adds.
-template <int order>
-[[gnu::always_inline]] inline void sum_tile(std::span<const TileVisit> visits, std::ptrdiff_t offset,
-                                            std::ptrdiff_t stride, float start, TileSums<order>& right,
-                                            const TileRowOutput& out) {
-  constexpr int height = tile_height(order);
-  TileLine sums[height][order + 1] = {};
+/// sum += weight line, rounded once, as the fused instruction of a processor that has it and by a function otherwise.
+template <class Line, int... x>
+[[gnu::always_inline]] inline void add_product(float weight, const typename Line::Floats& line,
+                                               typename Line::Floats& sum, std::integer_sequence<int, x...>) {
+  const auto w = typename Line::Floats{} + weight;
+  const auto a = line;
+  const auto b = sum;
+  sum = typename Line::Floats{__builtin_fmaf(w[x], a[x], b[x])...};
+}
+
+/// sum(x) += left(x + column), `right` being what lies to the right of `left`.
+template <class Line, int... x>
+[[gnu::always_inline]] inline void add_moved(const typename Line::Floats& left, const typename Line::Floats& right,
+                                             int column, typename Line::Floats& sum, std::integer_sequence<int, x...>) {
+  sum += __builtin_shuffle(left, right, typename Line::Index{x...} + column);
+}
+
+/// Sums s_i(x, y) = Σ_visits wx_i g(x, y), 1 <= i <= n, of a block, where g(x, y) = Σ_j wy_j from(x, y + j).
+template <int order, class Line, int height>
+struct BlockSums {
+  typename Line::Floats rows[height][order + 1] = {};
+};
+
+/// out(x, y) = start + Σ_i s_i(x + i, y), with s_i of the block and of `right`, the block to its right, which becomes
+/// this one. As the weights of an axis have the sum 1, g = from_n + Σ_{j < n} wy_j (from_j − from_n) and
+/// s_n = Σ_visits g − Σ_{i < n} s_i. So a visit takes, a row, one load, n + 1 additions and 2 n fused multiply-adds.
+template <int order, class Line, int height>
+[[gnu::always_inline]] inline void sum_block(std::span<const TileVisit> visits, std::ptrdiff_t offset,
+                                             std::ptrdiff_t stride, float start, BlockSums<order, Line, height>& right,
+                                             const TileRowOutput& out) {
+  using Floats = typename Line::Floats;
+  using Loose = typename Line::Loose;
+  constexpr std::make_integer_sequence<int, Line::lanes> all{};
+  Floats sums[height][order + 1] = {};
 #pragma GCC unroll 16
   for (int y = 0; y < height; ++y) {
     sums[y][order] += start;
@@ -44,22 +61,22 @@ template <int order>
     const float* from = visit.from + offset;
     const float* wx = visit.weights->x;
     const float* wy = visit.weights->y;
-    TileLine taps[order + 1];
+    Floats taps[order + 1];
 #pragma GCC unroll 8
     for (int j = 0; j < order; ++j, from += stride) {
-      taps[j] = *reinterpret_cast<const LooseLine*>(from);
+      taps[j] = *reinterpret_cast<const Loose*>(from);
     }
 #pragma GCC unroll 16
     for (int y = 0; y < height; ++y, from += stride) {
-      taps[order] = *reinterpret_cast<const LooseLine*>(from);
-      TileLine blend = taps[order];
+      taps[order] = *reinterpret_cast<const Loose*>(from);
+      Floats blend = taps[order];
 #pragma GCC unroll 8
       for (int j = 0; j < order; ++j) {
-        add_product(wy[j], taps[j] - taps[order], blend);
+        add_product<Line>(wy[j], taps[j] - taps[order], blend, all);
       }
 #pragma GCC unroll 8
       for (int i = 0; i < order; ++i) {
-        add_product(wx[i], blend, sums[y][i]);
+        add_product<Line>(wx[i], blend, sums[y][i], all);
       }
       sums[y][order] += blend;
 #pragma GCC unroll 8
@@ -68,56 +85,83 @@ template <int order>
       }
     }
   }
-  const LineIndex columns = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 #pragma GCC unroll 16
   for (int y = 0; y < height; ++y) {
 #pragma GCC unroll 8
     for (int i = 0; i < order; ++i) {
       sums[y][order] -= sums[y][i];
     }
-    TileLine total = sums[y][0];
+    Floats total = sums[y][0];
 #pragma GCC unroll 8
     for (int i = 1; i <= order; ++i) {
-      total += __builtin_shuffle(sums[y][i], right.rows[y][i], columns + i);
+      add_moved<Line>(sums[y][i], right.rows[y][i], i, total, all);
       right.rows[y][i] = sums[y][i];
     }
     if (y < out.rows) {
-      *reinterpret_cast<TileLine*>(out.data + y * out.stride) = total;
+      *reinterpret_cast<Floats*>(out.data + y * out.stride) = total;
     }
   }
 }
 
-template <int order>
+/// Tile by tile from the right, each in blocks of a register of columns and `height` rows, whose sums fit the
+/// registers.
+template <int order, class Line, int height>
 [[gnu::always_inline]] inline void sum_tiles_of(const TileRow& tiles, std::ptrdiff_t offset, float start,
                                                 const TileRowOutput& out) {
-  TileSums<order> right;
-  for (std::size_t i = tiles.first.size() - 1; i-- > 0;) {
-    const auto x = static_cast<std::ptrdiff_t>(i) * tile_width;
-    const auto visits = tiles.visits.subspan(tiles.first[i], tiles.first[i + 1] - tiles.first[i]);
-    sum_tile<order>(visits, offset, tiles.stride, start, right,
-                    {out.data + x, out.stride, x < out.stride ? out.rows : 0});
+  static_assert(tile_width % Line::lanes == 0 && tile_height(order) % height == 0 && order <= Line::lanes);
+  for (int top = 0; top < tile_height(order); top += height) {
+    BlockSums<order, Line, height> right;
+    for (std::size_t i = tiles.first.size() - 1; i-- > 0;) {
+      const auto visits = tiles.visits.subspan(tiles.first[i], tiles.first[i + 1] - tiles.first[i]);
+      for (int left = tile_width - Line::lanes; left >= 0; left -= Line::lanes) {
+        const std::ptrdiff_t x = static_cast<std::ptrdiff_t>(i) * tile_width + left;
+        sum_block<order, Line, height>(
+            visits, offset + top * tiles.stride + left, tiles.stride, start, right,
+            {out.data + top * out.stride + x, out.stride, x < out.stride ? out.rows - top : 0});
+      }
+    }
   }
+}
+
+/// Tiles in blocks of one register across and a part of the rows.
+template <class Line, int parts>
+[[gnu::always_inline]] inline void sum_tiles_of(int order, const TileRow& tiles, std::ptrdiff_t offset, float start,
+                                                const TileRowOutput& out) {
+  switch (order) {
+    case 0:
+      return sum_tiles_of<0, Line, tile_height(0) / parts>(tiles, offset, start, out);
+    case 1:
+      return sum_tiles_of<1, Line, tile_height(1) / parts>(tiles, offset, start, out);
+    case 2:
+      return sum_tiles_of<2, Line, tile_height(2) / parts>(tiles, offset, start, out);
+    case 3:
+      return sum_tiles_of<3, Line, tile_height(3) / parts>(tiles, offset, start, out);
+    case 4:
+      return sum_tiles_of<4, Line, tile_height(4) / parts>(tiles, offset, start, out);
+    default:
+      return sum_tiles_of<5, Line, tile_height(5) / parts>(tiles, offset, start, out);
+  }
+}
+
+__attribute__((target("avx512f"))) void sum_tiles_avx512(int order, const TileRow& tiles, std::ptrdiff_t offset,
+                                                         float start, const TileRowOutput& out) {
+  sum_tiles_of<WideLine, 1>(order, tiles, offset, start, out);
+}
+
+__attribute__((target("avx2,fma"))) void sum_tiles_avx2(int order, const TileRow& tiles, std::ptrdiff_t offset,
+                                                        float start, const TileRowOutput& out) {
+  sum_tiles_of<NarrowLine, 2>(order, tiles, offset, start, out);
 }
 
 }  // namespace
 
-__attribute__((target_clones("default", "arch=x86-64-v3", "avx512f"))) void sum_tiles(int order, const TileRow& tiles,
-                                                                                      std::ptrdiff_t offset,
-                                                                                      float start,
-                                                                                      const TileRowOutput& out) {
-  switch (order) {
-    case 0:
-      return sum_tiles_of<0>(tiles, offset, start, out);
-    case 1:
-      return sum_tiles_of<1>(tiles, offset, start, out);
-    case 2:
-      return sum_tiles_of<2>(tiles, offset, start, out);
-    case 3:
-      return sum_tiles_of<3>(tiles, offset, start, out);
-    case 4:
-      return sum_tiles_of<4>(tiles, offset, start, out);
-    default:
-      return sum_tiles_of<5>(tiles, offset, start, out);
+void sum_tiles(int order, const TileRow& tiles, std::ptrdiff_t offset, float start, const TileRowOutput& out) {
+  if (__builtin_cpu_supports("avx512f")) {
+    sum_tiles_avx512(order, tiles, offset, start, out);
+  } else if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+    sum_tiles_avx2(order, tiles, offset, start, out);
+  } else {
+    sum_tiles_of<NarrowLine, 2>(order, tiles, offset, start, out);
   }
 }
 
