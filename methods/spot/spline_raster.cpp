@@ -181,6 +181,7 @@ Image sum_by_impact(const SplineTexton& texton, std::span<const Image> framed, c
   const int height = tile_height(texton.order);
   const int tile_rows = (impacts.size.height + height - 1) / height;
   const std::ptrdiff_t stride = framed.front().row_stride();
+  const std::ptrdiff_t plane = framed.front().height() * stride;
   const std::vector<RasterStrip> strips = draw_strips(texton, impacts, reach(texton));
   Image out = Image::uninitialized(impacts.size, texton.coefficients.channels());
   parallel_for((tile_rows + band_tile_rows - 1) / band_tile_rows, [&](int band) {
@@ -195,8 +196,7 @@ Image sum_by_impact(const SplineTexton& texton, std::span<const Image> framed, c
       for (int i = first; i < end; ++i) {
         const TileVisits& tiles = rows[static_cast<std::size_t>(i - first)];
         sum_tiles(
-            texton.order, {tiles.visits, tiles.first, stride}, c * framed.front().height() * stride,
-            start[static_cast<std::size_t>(c)],
+            texton.order, {tiles.visits, tiles.first, stride}, c * plane, start[static_cast<std::size_t>(c)],
             {out.row(c, i * height).data(), out.row_stride(), std::min(height, impacts.size.height - i * height)});
       }
     }

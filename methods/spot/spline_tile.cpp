@@ -10,13 +10,11 @@ struct WideLine {
   static constexpr int lanes = 16;
   using Floats = float __attribute__((vector_size(lanes * sizeof(float)), may_alias));
   using Loose = float __attribute__((vector_size(lanes * sizeof(float)), aligned(alignof(float)), may_alias));
-  using Index = int __attribute__((vector_size(lanes * sizeof(int))));
 };
 struct NarrowLine {
   static constexpr int lanes = 8;
   using Floats = float __attribute__((vector_size(lanes * sizeof(float)), may_alias));
   using Loose = float __attribute__((vector_size(lanes * sizeof(float)), aligned(alignof(float)), may_alias));
-  using Index = int __attribute__((vector_size(lanes * sizeof(int))));
 };
 
 /// sum += weight line, rounded once, as the fused instruction of a processor that has it and by a function otherwise.
@@ -30,10 +28,20 @@ template <class Line, int... x>
 }
 
 /// sum(x) += left(x + column), `right` being what lies to the right of `left`.
-template <class Line, int... x>
-[[gnu::always_inline]] inline void add_moved(const typename Line::Floats& left, const typename Line::Floats& right,
-                                             int column, typename Line::Floats& sum, std::integer_sequence<int, x...>) {
-  sum += __builtin_shuffle(left, right, typename Line::Index{x...} + column);
+template <class Line, int column, int... x>
+[[gnu::always_inline]] inline void add_moved([[maybe_unused]] const typename Line::Floats& left,
+                                             [[maybe_unused]] const typename Line::Floats& right,
+                                             typename Line::Floats& sum, std::integer_sequence<int, x...>) {
+  sum += __builtin_shufflevector(left, right, (column + x)...);
+}
+
+/// sum(x) += Σ_i left_i(x + i), i from 1 on.
+template <class Line, int... i>
+[[gnu::always_inline]] inline void add_all_moved([[maybe_unused]] const typename Line::Floats* left,
+                                                 [[maybe_unused]] const typename Line::Floats* right,
+                                                 [[maybe_unused]] typename Line::Floats& sum,
+                                                 std::integer_sequence<int, i...>) {
+  (add_moved<Line, i + 1>(left[i + 1], right[i + 1], sum, std::make_integer_sequence<int, Line::lanes>{}), ...);
 }
 
 /// Sums s_i(x, y) = Σ_visits wx_i g(x, y), 1 <= i <= n, of a block, where g(x, y) = Σ_j wy_j from(x, y + j).
@@ -92,9 +100,9 @@ template <int order, class Line, int height>
       sums[y][order] -= sums[y][i];
     }
     Floats total = sums[y][0];
+    add_all_moved<Line>(sums[y], right.rows[y], total, std::make_integer_sequence<int, order>{});
 #pragma GCC unroll 8
     for (int i = 1; i <= order; ++i) {
-      add_moved<Line>(sums[y][i], right.rows[y][i], i, total, all);
       right.rows[y][i] = sums[y][i];
     }
     if (y < out.rows) {
