@@ -1,9 +1,11 @@
 #include "methods/spot/spline_cost.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "methods/base/convolution.h"
 #include "methods/spot/spline_place.h"
+#include "methods/spot/spline_tile.h"
 
 namespace textonbench {
 
@@ -26,18 +28,24 @@ SplineCost cost_by_point(const SplineTexton& texton, double intensity) {
 }
 
 SplineCost cost_by_impact(const SplineTexton& texton, double intensity, const Domain& domain) {
-  constexpr double line_floats = 16;
   constexpr double impact_nanoseconds = 50;
-  constexpr double line_nanoseconds = 1.45;
-  constexpr double order_nanoseconds = 0.93;
+  constexpr double cached_row_nanoseconds = 0.8;
+  constexpr double uncached_row_nanoseconds = 1.25;
+  constexpr double order_nanoseconds = 1.3;
+  constexpr double cached_coefficients = 1 << 14;
   const auto [width, height] = reach(texton);
+  const Extent kernel = texton.coefficients.extent();
   const int channels = texton.coefficients.channels();
   // Columns of impacts that reach the domain, over its own.
   const double reached = 1 + (width - 1.0) / domain.size.width;
-  // A row of a kernel meets (width + 15) / 16 lines on average over its places.
-  const double lines = channels * height * (width + line_floats - 1) / line_floats;
-  return {intensity * width * height * channels * (4.0 * texton.order + 3),
-          intensity * reached * (impact_nanoseconds + lines * (line_nanoseconds + order_nanoseconds * texton.order))};
+  // Rows of tiles that a kernel meets on average over its places.
+  const double rows =
+      channels * (height + tile_height(texton.order) - 1.0) * (kernel.width + tile_width - 1.0) / tile_width;
+  const double load =
+      static_cast<double>(kernel.area()) <= cached_coefficients ? cached_row_nanoseconds : uncached_row_nanoseconds;
+  const double row = std::max(load, order_nanoseconds * texton.order - cached_row_nanoseconds);
+  return {intensity * width * height * channels * (5.0 * texton.order + 1),
+          intensity * (reached * impact_nanoseconds + rows * row)};
 }
 
 SplineCost cost_by_convolution(const SplineTexton& texton, double intensity, const Domain& domain) {

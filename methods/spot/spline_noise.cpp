@@ -100,7 +100,7 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
         scale_(std::sqrt((options.kernel_at ? 1.0 : static_cast<double>(texton_.coefficients.kernels.size())) /
                          grid_.intensity())),
         points_(texton_, scale_),
-        framed_(frame_coefficients(texton_, scale_)) {
+        framed_(frame_coefficients(texton_, scale_, grid_.mean_weight() == 0)) {
     start_.reserve(texton_.coefficients.mean.size());
     const auto kernels = static_cast<double>(texton_.coefficients.kernels.size());
     for (int c = 0; c < channels(); ++c) {

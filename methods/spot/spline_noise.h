@@ -16,10 +16,11 @@
 
 namespace textonbench {
 
-/// How a raster is computed: point by point (any step), rows added impact by impact (step 1), by FFT convolution of the
-/// splatted impacts (step 1), or whichever costs least by a measured model. All draw one field, to 1e-5 of its standard
-/// deviation. Windows that overlap, their corners whole pixels apart, agree bit for bit by points and by impacts, and
-/// so do the route points and evaluate(); by convolution, and where the automatic choice differs, they agree to 1e-5.
+/// How a raster is computed: point by point (any step), tiles summed impact by impact (step 1), by FFT convolution of
+/// the splatted impacts (step 1), or whichever costs least by a measured model. All draw one field, to 1e-5 of its
+/// standard deviation. Windows that overlap, their corners whole pixels apart, agree bit for bit by points and by
+/// impacts, and so do the route points and evaluate(); by convolution, and where the automatic choice differs, they
+/// agree to 1e-5.
 enum class SplineRoute { automatic, points, impacts, convolution };
 
 struct SplineNoiseOptions {

@@ -1,30 +1,31 @@
 #include "methods/spot/spline_raster.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "methods/base/bspline.h"
 #include "methods/base/convolution.h"
 #include "methods/base/parallel.h"
 #include "methods/spot/spline_place.h"
+#include "methods/spot/spline_tile.h"
 
 namespace textonbench {
 namespace {
 
-/// Rows that one thread sums at a time: with the width of a texton they stay in the L1 cache.
+/// Rows that one thread splats impacts to at a time.
 constexpr int raster_band = 32;
 
-/// Floats of a cache line.
-constexpr int raster_line = 16;
-using RasterLine = float __attribute__((vector_size(raster_line * sizeof(float)), may_alias));
-using KernelLine = float __attribute__((vector_size(raster_line * sizeof(float)), aligned(alignof(float)), may_alias));
+/// Rows of tiles that one thread sums, channel after channel: a channel of a large kernel stays in the L2 cache under
+/// them.
+constexpr int band_tile_rows = 4;
 
 /// An impact whose first taps are pixels (x + column, y + row) of the raster.
 struct RasterImpact {
   std::int64_t x = 0;
   std::int64_t y = 0;
   int kernel = 0;
-  float wx[max_bspline_order + 1] = {};
-  float wy[max_bspline_order + 1] = {};
+  bool negative = false;
+  TapWeights weights;
 };
 
 /// Impacts of one row of cells, and the rows [first, end) of the raster that they reach.
@@ -55,12 +56,9 @@ void weights_of_order(int order, float t, float* weights) {
 RasterImpact place_impact(int order, PlanePoint origin, const PlaneImpact& impact) {
   const std::int64_t dx = origin.x + tap_offset(order) - impact.x;
   const std::int64_t dy = origin.y + tap_offset(order) - impact.y;
-  RasterImpact placed{-(dx >> plane_bits), -(dy >> plane_bits), impact.kernel, {}, {}};
-  weights_of_order(order, knot_position(dx), placed.wx);
-  weights_of_order(order, knot_position(dy), placed.wy);
-  for (float& w : placed.wx) {
-    w *= impact.weight;
-  }
+  RasterImpact placed{-(dx >> plane_bits), -(dy >> plane_bits), impact.kernel, impact.weight < 0, {}};
+  weights_of_order(order, knot_position(dx), placed.weights.x);
+  weights_of_order(order, knot_position(dy), placed.weights.y);
   return placed;
 }
 
@@ -101,90 +99,77 @@ void visit_band(std::span<const RasterStrip> strips, std::int64_t top, std::int6
   }
 }
 
-/// Rows of a framed kernel from the first tap of the first output row on, and of the output.
-struct LineRows {
+/// Tiles [begin, end) of a row that an impact reaches, and its tap under the first pixel of tile 0.
+struct TileSpan {
+  std::int64_t begin;
+  std::int64_t end;
   const float* from;
-  std::ptrdiff_t from_stride;
-  float* to;
-  std::ptrdiff_t to_stride;
-  std::int64_t count;
+  const TapWeights* weights;
 };
 
-/// to(x, y) += Σ_j wy_j Σ_i wx_i from(x + i, y + j) in one line: rows are blended along x once and kept while the
-/// output rows that they are taps of pass by.
-template <int order>
-[[gnu::always_inline]] inline void add_line(const LineRows& rows, const float* wx, const float* wy) {
-  RasterLine blends[order + 1];
-  const float* from = rows.from;
-  for (int j = 0; j < order; ++j) {
-    blends[j] = wx[0] * *reinterpret_cast<const KernelLine*>(from);
-    for (int i = 1; i <= order; ++i) {
-      blends[j] += wx[i] * *reinterpret_cast<const KernelLine*>(from + i);
+/// Visits tile by tile, those of a tile in the order of the spans.
+struct TileVisits {
+  std::vector<TileVisit> visits;
+  std::vector<std::size_t> first;
+};
+
+TileVisits sort_by_tile(std::span<const TileSpan> spans, std::size_t tiles) {
+  TileVisits sorted{{}, std::vector<std::size_t>(tiles + 1)};
+  for (const TileSpan& span : spans) {
+    for (std::int64_t tile = span.begin; tile < span.end; ++tile) {
+      ++sorted.first[static_cast<std::size_t>(tile) + 1];
     }
-    from += rows.from_stride;
   }
-  float* to = rows.to;
-  for (std::int64_t y = 0; y < rows.count; ++y) {
-    blends[order] = wx[0] * *reinterpret_cast<const KernelLine*>(from);
-    for (int i = 1; i <= order; ++i) {
-      blends[order] += wx[i] * *reinterpret_cast<const KernelLine*>(from + i);
+  std::partial_sum(sorted.first.begin(), sorted.first.end(), sorted.first.begin());
+  sorted.visits.resize(sorted.first.back());
+  std::vector<std::size_t> next = sorted.first;
+  for (const TileSpan& span : spans) {
+    for (std::int64_t tile = span.begin; tile < span.end; ++tile) {
+      sorted.visits[next[static_cast<std::size_t>(tile)]++] = {span.from + tile * tile_width, span.weights};
     }
-    RasterLine sum = wy[0] * blends[0];
-    for (int j = 1; j <= order; ++j) {
-      sum += wy[j] * blends[j];
-    }
-    *reinterpret_cast<RasterLine*>(to) += sum;
-    for (int j = 0; j < order; ++j) {
-      blends[j] = blends[j + 1];
-    }
-    from += rows.from_stride;
-    to += rows.to_stride;
   }
+  return sorted;
 }
 
-/// add_line in each of `lines` lines.
-template <int order>
-[[gnu::always_inline]] inline void add_lines(LineRows rows, std::int64_t lines, const float* wx, const float* wy) {
-  for (std::int64_t i = 0; i < lines; ++i) {
-    add_line<order>(rows, wx, wy);
-    rows.from += raster_line;
-    rows.to += raster_line;
-  }
-}
-
-__attribute__((target_clones("default", "avx2", "avx512f"))) void add_kernel(int order, const LineRows& rows,
-                                                                             std::int64_t lines, const float* wx,
-                                                                             const float* wy) {
-  switch (order) {
-    case 0:
-      return add_lines<0>(rows, lines, wx, wy);
-    case 1:
-      return add_lines<1>(rows, lines, wx, wy);
-    case 2:
-      return add_lines<2>(rows, lines, wx, wy);
-    case 3:
-      return add_lines<3>(rows, lines, wx, wy);
-    case 4:
-      return add_lines<4>(rows, lines, wx, wy);
-    default:
-      return add_lines<5>(rows, lines, wx, wy);
-  }
+/// Visits of the tiles whose first row is pixel row `top`, in the first channel.
+TileVisits visit_tiles(const SplineTexton& texton, std::span<const Image> framed, std::span<const RasterStrip> strips,
+                       int width, int top) {
+  const int order = texton.order;
+  const int height = tile_height(order);
+  const Extent kernel = texton.coefficients.extent();
+  std::vector<TileSpan> spans;
+  visit_band(
+      strips, top, top + height, kernel.height + order, [&](const RasterImpact& impact, std::int64_t, std::int64_t) {
+        // Columns whose first tap is a coefficient, and which one of the pixels takes.
+        const std::int64_t left = impact.x + order;
+        const std::int64_t right = std::min<std::int64_t>(left + kernel.width, width + order);
+        if (left < right && right > 0) {
+          const Image& image =
+              framed[static_cast<std::size_t>(impact.kernel) + (impact.negative ? framed.size() / 2 : 0)];
+          const std::int64_t row = top - impact.y + height - 1;
+          spans.push_back({std::max<std::int64_t>(0, left) / tile_width, (right + tile_width - 1) / tile_width,
+                           image.plane(0) + row * image.row_stride() + (tile_width - 1 - left), &impact.weights});
+        }
+      });
+  return sort_by_tile(spans, static_cast<std::size_t>((width + order + tile_width - 1) / tile_width));
 }
 
 }  // namespace
 
-std::vector<Image> frame_coefficients(const SplineTexton& texton, double scale) {
-  const int left = raster_line + texton.order;
+std::vector<Image> frame_coefficients(const SplineTexton& texton, double scale, bool both_signs) {
+  const int left = tile_width - 1;
+  const int top = tile_height(texton.order) - 1 + texton.order;
   const auto [width, height] = texton.coefficients.extent();
   std::vector<Image> framed;
-  framed.reserve(texton.coefficients.kernels.size());
-  for (const Image& kernel : texton.coefficients.kernels) {
-    Image& image =
-        framed.emplace_back(Extent{width + 2 * left, height + 2 * texton.order}, texton.coefficients.channels());
-    for (int c = 0; c < kernel.channels(); ++c) {
-      for (int y = 0; y < height; ++y) {
-        std::ranges::transform(kernel.row(c, y), image.row(c, y + texton.order).begin() + left,
-                               [scale](float v) { return static_cast<float>(scale * v); });
+  framed.reserve(2 * texton.coefficients.kernels.size());
+  for (const double factor : both_signs ? std::vector{scale, -scale} : std::vector{scale}) {
+    for (const Image& kernel : texton.coefficients.kernels) {
+      Image& image = framed.emplace_back(Extent{width + 2 * left, height + 2 * top}, texton.coefficients.channels());
+      for (int c = 0; c < kernel.channels(); ++c) {
+        for (int y = 0; y < height; ++y) {
+          std::ranges::transform(kernel.row(c, y), image.row(c, y + top).begin() + left,
+                                 [factor](float v) { return static_cast<float>(factor * v); });
+        }
       }
     }
   }
@@ -193,29 +178,27 @@ std::vector<Image> frame_coefficients(const SplineTexton& texton, double scale) 
 
 Image sum_by_impact(const SplineTexton& texton, std::span<const Image> framed, const RasterImpacts& impacts,
                     std::span<const float> start) {
-  const Extent kernel = reach(texton);
-  const std::vector<RasterStrip> strips = draw_strips(texton, impacts, kernel);
+  const int height = tile_height(texton.order);
+  const int tile_rows = (impacts.size.height + height - 1) / height;
+  const std::ptrdiff_t stride = framed.front().row_stride();
+  const std::ptrdiff_t plane = framed.front().height() * stride;
+  const std::vector<RasterStrip> strips = draw_strips(texton, impacts, reach(texton));
   Image out = Image::uninitialized(impacts.size, texton.coefficients.channels());
-  const std::int64_t stride = out.row_stride();
-  parallel_for((impacts.size.height + raster_band - 1) / raster_band, [&](int band) {
-    const int top = band * raster_band;
-    const int bottom = std::min(top + raster_band, impacts.size.height);
+  parallel_for((tile_rows + band_tile_rows - 1) / band_tile_rows, [&](int band) {
+    const int first = band * band_tile_rows;
+    const int end = std::min(first + band_tile_rows, tile_rows);
+    std::vector<TileVisits> rows;
+    rows.reserve(band_tile_rows);
+    for (int i = first; i < end; ++i) {
+      rows.push_back(visit_tiles(texton, framed, strips, impacts.size.width, i * height));
+    }
     for (int c = 0; c < out.channels(); ++c) {
-      for (int y = top; y < bottom; ++y) {
-        std::fill_n(out.row(c, y).data(), stride, start[static_cast<std::size_t>(c)]);
+      for (int i = first; i < end; ++i) {
+        const TileVisits& tiles = rows[static_cast<std::size_t>(i - first)];
+        sum_tiles(
+            texton.order, {tiles.visits, tiles.first, stride}, c * plane, start[static_cast<std::size_t>(c)],
+            {out.row(c, i * height).data(), out.row_stride(), std::min(height, impacts.size.height - i * height)});
       }
-      visit_band(strips, top, bottom, kernel.height, [&](const RasterImpact& impact, std::int64_t y, std::int64_t end) {
-        const Image& image = framed[static_cast<std::size_t>(impact.kernel)];
-        // Whole lines of the output, from the one with the first pixel in reach to the one with the last.
-        const std::int64_t left = std::max<std::int64_t>(0, impact.x) / raster_line * raster_line;
-        const std::int64_t right = std::min(stride, impact.x + kernel.width);
-        if (left < right) {
-          const float* from = image.row(c, static_cast<int>(y - impact.y)).data() + raster_line + (left - impact.x);
-          float* to = out.row(c, static_cast<int>(y)).data() + left;
-          add_kernel(texton.order, {from, image.row_stride(), to, stride, end - y},
-                     (right - left + raster_line - 1) / raster_line, impact.wx, impact.wy);
-        }
-      });
     }
   });
   return out;
@@ -241,9 +224,10 @@ Image sum_by_convolution(const SplineTexton& texton, double scale, const RasterI
           const std::int64_t left = impact.x + width - 1;
           for (; y < end; ++y) {
             const auto row = field.row(0, static_cast<int>(y + height - 1));
-            const float weight = impact.wy[texton.order - (y - impact.y)];
+            const float share = impact.weights.y[texton.order - (y - impact.y)];
+            const float weight = impact.negative ? -share : share;
             for (std::int64_t i = std::max<std::int64_t>(0, -left); i <= texton.order && left + i < size.width; ++i) {
-              row[static_cast<std::size_t>(left + i)] += weight * impact.wx[texton.order - i];
+              row[static_cast<std::size_t>(left + i)] += weight * impact.weights.x[texton.order - i];
             }
           }
         });

@@ -12,8 +12,9 @@
 
 namespace textonbench {
 
-/// Coefficients with a frame of zeros, for sums made cache line by cache line.
-std::vector<Image> frame_coefficients(const SplineTexton& texton, double scale);
+/// Coefficients times `scale` with a frame of zeros, for sums made tile by tile; where there are impacts of both signs,
+/// the kernels of the negative ones after the others, times −scale.
+std::vector<Image> frame_coefficients(const SplineTexton& texton, double scale, bool both_signs);
 
 /// Impacts of a raster.
 struct RasterImpacts {
