@@ -54,9 +54,9 @@ struct Numbers {
   FloatLanes re, im;
 };
 
-/// z(k) ← Σ_j z(j) ω^{jk}, ω = exp(−2πi / radix), whose powers are roots[0], roots[step], ….
+/// z(k) ← Σ_j z(j) ω^{jk}, ω = exp(−2πi / radix), whose powers are `roots`.
 template <int radix>
-[[gnu::always_inline]] inline void transform_few(Numbers (&z)[radix], const std::complex<float>* roots, int step) {
+[[gnu::always_inline]] inline void transform_few(Numbers (&z)[radix], const std::complex<float> (&roots)[radix]) {
   if constexpr (radix == 2) {
     const Numbers difference = {z[0].re - z[1].re, z[0].im - z[1].im};
     z[0] = {z[0].re + z[1].re, z[0].im + z[1].im};
@@ -84,7 +84,7 @@ template <int radix>
       Numbers even = first;
       Numbers odd = {};
       for (int j = 1; j <= half; ++j) {
-        const std::complex<float> root = roots[j * k % radix * step];
+        const std::complex<float> root = roots[j * k % radix];
         even.re += root.real() * sum[j - 1].re;
         even.im += root.real() * sum[j - 1].im;
         odd.re += root.imag() * off[j - 1].re;
@@ -102,39 +102,41 @@ template <int radix>
 template <int radix>
 [[gnu::always_inline]] inline void pass(const BlockFft::Tables& tables, int stride, int real, const float* from,
                                         float* to) {
-  const std::complex<float>* roots = tables.roots.data();
-  const int imag = block_lines - real;
+  const std::complex<float>* all_roots = tables.roots.data();
   const int rest = tables.length / stride / radix;
+  const std::ptrdiff_t from_step = rest * stride * block_row;
+  const std::ptrdiff_t to_step = stride * block_row;
+  const std::ptrdiff_t imag = block_lines - 2 * real;  // from the real parts to the imaginary ones
+  std::complex<float> roots[radix];
+  for (int j = 0; j < radix; ++j) {
+    roots[j] = all_roots[j * rest * stride];
+  }
   for (int p = 0; p < rest; ++p) {
     std::complex<float> twiddles[radix];
     for (int k = 1; k < radix; ++k) {
-      twiddles[k] = roots[k * p * stride];
+      twiddles[k] = all_roots[k * p * stride];
     }
-    for (int q = 0; q < stride; ++q) {
+    const float* in = from + p * to_step + real;
+    float* out = to + p * to_step * radix + real;
+    for (int q = 0; q < stride; ++q, in += block_row, out += block_row) {
       Numbers z[radix];
       for (int j = 0; j < radix; ++j) {
-        const float* row = from + (q + std::ptrdiff_t{stride} * (p + j * rest)) * block_row;
-        load(row + real, z[j].re);
-        load(row + imag, z[j].im);
+        load(in + j * from_step, z[j].re);
+        load(in + j * from_step + imag, z[j].im);
       }
-      transform_few<radix>(z, roots, tables.length / radix);
-      for (int k = 0; k < radix; ++k) {
-        float* row = to + (q + std::ptrdiff_t{stride} * (p * radix + k)) * block_row;
-        if (k == 0) {
-          store(z[0].re, row + real);
-          store(z[0].im, row + imag);
-        } else {
-          store(z[k].re * twiddles[k].real() - z[k].im * twiddles[k].imag(), row + real);
-          store(z[k].re * twiddles[k].imag() + z[k].im * twiddles[k].real(), row + imag);
-        }
+      transform_few<radix>(z, roots);
+      store(z[0].re, out);
+      store(z[0].im, out + imag);
+      for (int k = 1; k < radix; ++k) {
+        store(z[k].re * twiddles[k].real() - z[k].im * twiddles[k].imag(), out + k * to_step);
+        store(z[k].re * twiddles[k].imag() + z[k].im * twiddles[k].real(), out + k * to_step + imag);
       }
     }
   }
 }
 
-__attribute__((target_clones("default", "avx2", "avx512f"))) void run_pass(const BlockFft::Tables& tables, int radix,
-                                                                           int stride, int real, const float* from,
-                                                                           float* to) {
+__attribute__((target_clones("default", "avx2"))) void run_pass(const BlockFft::Tables& tables, int radix, int stride,
+                                                                int real, const float* from, float* to) {
   switch (radix) {
     case 2:
       return pass<2>(tables, stride, real, from, to);

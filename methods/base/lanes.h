@@ -3,17 +3,16 @@
 // Functions that are compiled for several processors (target_clones) call these, so all of them are inlined.
 #pragma once
 
-#include <cstring>
-
 namespace textonbench {
 
-using FloatLanes [[gnu::vector_size(32)]] = float;
+using FloatLanes [[gnu::vector_size(32), gnu::may_alias]] = float;
 
+/// From and to addresses that are multiples of 32.
 [[gnu::always_inline]] inline void load(const float* from, FloatLanes& lanes) {
-  std::memcpy(&lanes, from, sizeof(FloatLanes));
+  lanes = *reinterpret_cast<const FloatLanes*>(from);
 }
 [[gnu::always_inline]] inline void store(const FloatLanes& lanes, float* to) {
-  std::memcpy(to, &lanes, sizeof(FloatLanes));
+  *reinterpret_cast<FloatLanes*>(to) = lanes;
 }
 
 /// Lane j of rows[i] becomes lane i of rows[j].
