@@ -168,7 +168,8 @@ ColumnTiles::ColumnTiles(int length, int rows, int channels)
     : length_(length),
       rows_(rows),
       channels_(channels),
-      data_(static_cast<std::size_t>(std::ptrdiff_t{count()} * rows * channels * block_row)) {}
+      stride_((rows | 1) * block_row),  // an odd number of cache lines, for a power of two would fill few of its sets
+      data_(static_cast<std::size_t>(std::ptrdiff_t{count()} * channels * stride_)) {}
 
 ColumnTiles transform_rows(const Image& image, int length) {
   ColumnTiles spectra(length, image.height(), image.channels());

@@ -19,12 +19,11 @@ class ColumnTiles {
   int length() const { return length_; }
   int rows() const { return rows_; }
   int count() const { return length_ / 2 / block_lines + 1; }
-  float* tile(int i, int channel) const {
-    return data_.data() + (std::ptrdiff_t{i} * channels_ + channel) * rows_ * block_row;
-  }
+  float* tile(int i, int channel) const { return data_.data() + (std::ptrdiff_t{i} * channels_ + channel) * stride_; }
 
  private:
   int length_, rows_, channels_;
+  std::ptrdiff_t stride_;
   AlignedBuffer<float> data_;
 };
 
