@@ -1,7 +1,6 @@
 #include "methods/base/block_rows.h"
 
 #include <algorithm>
-#include <cstring>
 #include <optional>
 
 #include "methods/base/lanes.h"
@@ -17,6 +16,8 @@ struct RowGroup {
   int channel, first, count;
 };
 
+// Rows of images have room for whole vectors, so what lies beyond their width may be read and written too.
+
 /// Rows of the group into the block, padded by zeros to `length` numbers a line.
 [[gnu::always_inline]] inline void gather(const Image& image, const RowGroup& group, int length, float* block) {
   for (int x = 0; x < image.width(); x += block_lines) {
@@ -24,8 +25,7 @@ struct RowGroup {
     for (int part = 0; part < group_rows; part += block_lines) {
       FloatLanes lanes[block_lines] = {};
       for (int i = 0; i < block_lines && part + i < group.count; ++i) {
-        std::memcpy(&lanes[i], image.row(group.channel, group.first + part + i).data() + x,
-                    static_cast<std::size_t>(columns) * sizeof(float));
+        load(image.row(group.channel, group.first + part + i).data() + x, lanes[i]);
       }
       transpose(lanes);
       for (int j = 0; j < columns; ++j) {
@@ -47,8 +47,7 @@ struct RowGroup {
       }
       transpose(lanes);
       for (int i = 0; i < block_lines && part + i < group.count; ++i) {
-        std::memcpy(image.row(group.channel, group.first + part + i).data() + x, &lanes[i],
-                    static_cast<std::size_t>(columns) * sizeof(float));
+        store(lanes[i], image.row(group.channel, group.first + part + i).data() + x);
       }
     }
   }
