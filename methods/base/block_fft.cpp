@@ -100,25 +100,25 @@ template <int radix>
 /// transforms of length n = length / stride. Number p of transform q is at row q + stride p. `real` is the place of
 /// the real parts in a row.
 template <int radix>
-[[gnu::always_inline]] inline void pass(const BlockFft::Tables& tables, int stride, int real, const float* from,
-                                        float* to) {
+[[gnu::always_inline]] inline void pass(const BlockFft::Tables& tables, std::ptrdiff_t stride, int real,
+                                        const float* from, float* to) {
   const std::complex<float>* all_roots = tables.roots.data();
-  const int rest = tables.length / stride / radix;
+  const std::ptrdiff_t rest = tables.length / stride / radix;
   const std::ptrdiff_t from_step = rest * stride * block_row;
   const std::ptrdiff_t to_step = stride * block_row;
-  const std::ptrdiff_t imag = block_lines - 2 * real;  // from the real parts to the imaginary ones
+  const std::ptrdiff_t imag = block_lines - std::ptrdiff_t{2} * real;  // from the real parts to the imaginary ones
   std::complex<float> roots[radix];
   for (int j = 0; j < radix; ++j) {
     roots[j] = all_roots[j * rest * stride];
   }
-  for (int p = 0; p < rest; ++p) {
+  for (std::ptrdiff_t p = 0; p < rest; ++p) {
     std::complex<float> twiddles[radix];
     for (int k = 1; k < radix; ++k) {
       twiddles[k] = all_roots[k * p * stride];
     }
     const float* in = from + p * to_step + real;
     float* out = to + p * to_step * radix + real;
-    for (int q = 0; q < stride; ++q, in += block_row, out += block_row) {
+    for (std::ptrdiff_t q = 0; q < stride; ++q, in += block_row, out += block_row) {
       Numbers z[radix];
       for (int j = 0; j < radix; ++j) {
         load(in + j * from_step, z[j].re);
