@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "methods/base/block_fft.h"
+#include "methods/base/block_rows.h"
 #include "methods/base/fft_lines.h"
 #include "methods/base/fft_plan.h"
 
@@ -31,41 +33,14 @@ const BinBlock& scratch_bins(int height, int channels) {
   return *block;
 }
 
-/// Half spectra of the rows of `box`, padded to `length` samples.
-Spectrum transform_rows(const Image& box, int length) {
-  Spectrum rows = Spectrum::uninitialized({length, box.height()}, box.channels());
-  const CopyingLineFft transform(length, FftDirection::forward);
-  const int stride = (length + 7) / 8 * 8;  // both lines of the scratch row aligned
-  for_row_pairs(box.extent(), box.channels(), [&](int c, int y) {
-    const bool partner = y + 1 < box.height();
-    std::complex<float>* z = scratch_row(2 * stride);
-    join_rows(box.row(c, y).data(), partner ? box.row(c, y + 1).data() : nullptr, box.width(), length, z);
-    transform(z, z + stride);
-    split_spectra(z + stride, length, rows.row(c, y).data(), partner ? rows.row(c, y + 1).data() : nullptr);
-  });
-  return rows;
-}
-
-/// Transforms half spectra of rows back, as far as the columns of the box go.
-void transform_rows_back(const Spectrum& rows, Image& box) {
-  const int length = rows.raster().width;
-  const CopyingLineFft transform(length, FftDirection::backward);
-  const int stride = (length + 7) / 8 * 8;  // both lines of the scratch row aligned
-  for_row_pairs(box.extent(), box.channels(), [&](int c, int y) {
-    const bool partner = y + 1 < box.height();
-    std::complex<float>* z = scratch_row(2 * stride);
-    join_spectra(rows.row(c, y).data(), partner ? rows.row(c, y + 1).data() : nullptr, length, z);
-    transform(z, z + stride);
-    split_rows(z + stride, box.width(), box.row(c, y).data(), partner ? box.row(c, y + 1).data() : nullptr);
-  });
-}
-
-/// Copies the first rows of columns first … between spectrum and block.
-void store_columns(const BinBlock& block, int channel, int first, Spectrum& rows) {
-  const int columns = columns_in_block(rows.raster(), first);
-  for (int y = 0; y < rows.rows(); ++y) {
-    const std::complex<float>* in = block.bins(channel) + std::ptrdiff_t{y} * BinBlock::width;
-    std::copy(in, in + columns, rows.row(channel, y).data() + first);
+/// Transforms the first columns of a block back; what the tiles have no room for is dropped.
+void transform_columns_back(const BlockFft& fft, const BinBlock& block, int channels, int height, int i,
+                            const ColumnTiles& rows) {
+  const std::ptrdiff_t size = height * block_row;
+  float* pixels = scratch_floats(static_cast<std::size_t>(2 * size));
+  for (int c = 0; c < channels; ++c) {
+    fft.backward(block.bins(c), pixels, pixels + size);
+    std::copy(pixels, pixels + rows.rows() * block_row, rows.tile(i, c));
   }
 }
 
@@ -99,7 +74,7 @@ Spectrum forward_fft_of_box(const Image& box, Extent raster) {
 }
 
 BinBlock::BinBlock(int height, int channels)
-    : stride_(std::ptrdiff_t{height} * width), data_(static_cast<std::size_t>(stride_ * channels)) {
+    : stride_(height * block_row), data_(static_cast<std::size_t>(stride_ * channels)) {
   data_.set_zero();
 }
 
@@ -107,28 +82,26 @@ void copy_columns(const Spectrum& spectrum, int channel, int first, const BinBlo
   const int columns = columns_in_block(spectrum.raster(), first);
   for (int y = 0; y < spectrum.rows(); ++y) {
     const std::complex<float>* in = spectrum.row(channel, y).data() + first;
-    std::complex<float>* out = block.bins(channel) + std::ptrdiff_t{y} * BinBlock::width;
-    std::copy(in, in + columns, out);
-    std::fill(out + columns, out + BinBlock::width, 0.0F);
+    float* out = block.bins(channel) + y * block_row;
+    for (int i = 0; i < BinBlock::width; ++i) {
+      out[i] = i < columns ? in[i].real() : 0;
+      out[i + BinBlock::width] = i < columns ? in[i].imag() : 0;
+    }
   }
 }
 
 Image unnormalized_inverse_fft_in_box(const Spectrum& spectrum, Extent box, const BlockMap& map) {
   const Extent raster = spectrum.raster();
   require_inside(box, raster);
-  Spectrum rows = Spectrum::uninitialized({raster.width, box.height}, spectrum.channels());
-  const BlockFft backward(raster.height, FftDirection::backward);
-  parallel_for(block_count(raster), [&](int i) {
+  const ColumnTiles rows(raster.width, box.height, spectrum.channels());
+  const BlockFft fft(raster.height);
+  parallel_for(rows.count(), [&](int i) {
     const BinBlock& block = scratch_bins(raster.height, spectrum.channels());
-    const int first = i * BinBlock::width;
     for (int c = 0; c < spectrum.channels(); ++c) {
-      copy_columns(spectrum, c, first, block);
+      copy_columns(spectrum, c, i * BinBlock::width, block);
     }
-    map(first, block);
-    for (int c = 0; c < spectrum.channels(); ++c) {
-      backward(block.bins(c));
-      store_columns(block, c, first, rows);
-    }
+    map(i * BinBlock::width, block);
+    transform_columns_back(fft, block, spectrum.channels(), raster.height, i, rows);
   });
   Image image = Image::uninitialized(box, spectrum.channels());
   transform_rows_back(rows, image);
@@ -137,23 +110,20 @@ Image unnormalized_inverse_fft_in_box(const Spectrum& spectrum, Extent box, cons
 
 void map_box_spectrum(Image& box, Extent raster, const BlockMap& map) {
   require_inside(box.extent(), raster);
-  Spectrum rows = transform_rows(box, raster.width);
-  const BlockFft forward(raster.height, FftDirection::forward);
-  const BlockFft backward(raster.height, FftDirection::backward);
-  parallel_for(block_count(raster), [&](int i) {
+  const ColumnTiles rows = transform_rows(box, raster.width);
+  const BlockFft fft(raster.height);
+  const std::ptrdiff_t size = raster.height * block_row;
+  const std::ptrdiff_t given = box.height() * block_row;
+  parallel_for(rows.count(), [&](int i) {
     const BinBlock& block = scratch_bins(raster.height, box.channels());
-    const int first = i * BinBlock::width;
+    float* pixels = scratch_floats(static_cast<std::size_t>(2 * size));
     for (int c = 0; c < box.channels(); ++c) {
-      copy_columns(rows, c, first, block);
-      std::fill(block.bins(c) + std::ptrdiff_t{box.height()} * BinBlock::width,
-                block.bins(c) + std::ptrdiff_t{raster.height} * BinBlock::width, 0.0F);
-      forward(block.bins(c));
+      std::copy(rows.tile(i, c), rows.tile(i, c) + given, pixels);
+      std::fill(pixels + given, pixels + size, 0.0F);
+      fft.forward(pixels, block.bins(c), pixels + size);
     }
-    map(first, block);
-    for (int c = 0; c < box.channels(); ++c) {
-      backward(block.bins(c));
-      store_columns(block, c, first, rows);
-    }
+    map(i * BinBlock::width, block);
+    transform_columns_back(fft, block, box.channels(), raster.height, i, rows);
   });
   transform_rows_back(rows, box);
 }

@@ -14,17 +14,18 @@ namespace textonbench {
 /// the box is larger than the raster.
 Spectrum forward_fft_of_box(const Image& box, Extent raster);
 
-/// Eight neighboring columns of a spectrum, all channels: bin (first + i, ky) of channel c is bins(c)[8 * ky + i].
+/// Eight neighboring columns of a spectrum, all channels: of bin (first + i, ky) of channel c the real part is at
+/// bins(c)[16 * ky + i], the imaginary part 8 later.
 class BinBlock {
  public:
   static constexpr int width = 8;
 
   BinBlock(int height, int channels);
-  std::complex<float>* bins(int channel) const { return data_.data() + channel * stride_; }
+  float* bins(int channel) const { return data_.data() + channel * stride_; }
 
  private:
   std::ptrdiff_t stride_;
-  AlignedBuffer<std::complex<float>> data_;
+  AlignedBuffer<float> data_;
 };
 
 /// Copies columns first … first + 7 of a channel, `first` being a multiple of 8; zero beyond W/2.

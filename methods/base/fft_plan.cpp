@@ -14,6 +14,7 @@
 #include <tuple>
 
 #include "methods/base/aligned_buffer.h"
+#include "methods/base/block_fft.h"
 
 namespace textonbench {
 namespace {
@@ -49,7 +50,16 @@ void save_wisdom() {
   }
 }
 
-enum class Layout { line, copied_line, block };
+enum class Layout { line, block };
+
+/// Where a plan of a block finds the real and the imaginary parts. FFTW knows the forward transform only of data whose
+/// parts lie apart: the other one swaps them.
+struct BlockParts {
+  BlockParts(float* block, FftDirection direction)
+      : re(direction == FftDirection::forward ? block : block + block_lines),
+        im(direction == FftDirection::forward ? block + block_lines : block) {}
+  float *re, *im;
+};
 
 /// Complex plans, made once. FFTW's planner is not safe between threads; executing a plan is.
 class PlanCache {
@@ -58,26 +68,32 @@ class PlanCache {
     const std::lock_guard lock(mutex_);
     fftwf_plan& plan = plans_[{layout, length, direction}];
     if (plan == nullptr) {
-      plan = make(layout, length, direction == FftDirection::forward ? FFTW_FORWARD : FFTW_BACKWARD);
+      plan = make(layout, length, direction);
     }
     return plan;
   }
 
  private:
-  static fftwf_plan make(Layout layout, int length, int sign) {
+  static fftwf_plan make(Layout layout, int length, FftDirection direction) {
     const bool measure = measured_plans();
     if (measure) {
       fftwf_import_wisdom_from_filename(wisdom_file().c_str());
     }
+    const unsigned rigor = measure ? FFTW_MEASURE : FFTW_ESTIMATE;
     // Planning with timing overwrites its arrays, so it gets its own; plans are then executed on any array of the same
     // alignment.
-    const int lines = layout == Layout::block ? 8 : 1;
-    const AlignedBuffer<std::complex<float>> from(static_cast<std::size_t>(length) * static_cast<std::size_t>(lines));
-    const AlignedBuffer<std::complex<float>> to(layout == Layout::copied_line ? from.size() : 0);
-    auto* in = reinterpret_cast<fftwf_complex*>(from.data());
-    auto* out = layout == Layout::copied_line ? reinterpret_cast<fftwf_complex*>(to.data()) : in;
-    fftwf_plan plan = fftwf_plan_many_dft(1, &length, lines, in, nullptr, lines, 1, out, nullptr, lines, 1, sign,
-                                          measure ? FFTW_MEASURE : FFTW_ESTIMATE);
+    const AlignedBuffer<float> own(static_cast<std::size_t>(length) * block_row);
+    fftwf_plan plan = nullptr;
+    if (layout == Layout::line) {
+      auto* line = reinterpret_cast<fftwf_complex*>(own.data());
+      plan = fftwf_plan_dft_1d(length, line, line, direction == FftDirection::forward ? FFTW_FORWARD : FFTW_BACKWARD,
+                               rigor);
+    } else {
+      const BlockParts parts(own.data(), direction);
+      const fftwf_iodim along{length, block_row, block_row};
+      const fftwf_iodim across{block_lines, 1, 1};
+      plan = fftwf_plan_guru_split_dft(1, &along, 1, &across, parts.re, parts.im, parts.re, parts.im, rigor);
+    }
     if (plan == nullptr) {
       throw std::runtime_error(fmt::format("FFTW cannot plan a transform of length {}", length));
     }
@@ -96,24 +112,22 @@ PlanCache& plan_cache() {
   return cache;
 }
 
-void execute(fftwf_plan plan, std::complex<float>* from, std::complex<float>* to) {
-  fftwf_execute_dft(plan, reinterpret_cast<fftwf_complex*>(from), reinterpret_cast<fftwf_complex*>(to));
-}
-
 }  // namespace
 
 LineFft::LineFft(int length, FftDirection direction) : plan_(plan_cache().get(Layout::line, length, direction)) {}
 
-void LineFft::operator()(std::complex<float>* line) const { execute(plan_, line, line); }
+void LineFft::operator()(std::complex<float>* line) const {
+  auto* bins = reinterpret_cast<fftwf_complex*>(line);
+  fftwf_execute_dft(plan_, bins, bins);
+}
 
-CopyingLineFft::CopyingLineFft(int length, FftDirection direction)
-    : plan_(plan_cache().get(Layout::copied_line, length, direction)) {}
+AwkwardBlockFft::AwkwardBlockFft(int length, FftDirection direction)
+    : plan_(plan_cache().get(Layout::block, length, direction)), direction_(direction) {}
 
-void CopyingLineFft::operator()(std::complex<float>* from, std::complex<float>* to) const { execute(plan_, from, to); }
-
-BlockFft::BlockFft(int length, FftDirection direction) : plan_(plan_cache().get(Layout::block, length, direction)) {}
-
-void BlockFft::operator()(std::complex<float>* block) const { execute(plan_, block, block); }
+void AwkwardBlockFft::operator()(float* block) const {
+  const BlockParts parts(block, direction_);
+  fftwf_execute_split_dft(plan_, parts.re, parts.im, parts.re, parts.im);
+}
 
 const char* fft_plan_rigor() { return measured_plans() ? "measure" : "estimate"; }
 

@@ -1,4 +1,5 @@
-// One-dimensional complex Fourier transforms, for fft.cpp and box_fft.cpp. The only file pair that includes FFTW.
+// One-dimensional complex Fourier transforms, for fft.cpp, box_fft.cpp and block_fft.cpp. The only file pair that
+// includes FFTW.
 #pragma once
 
 #include <complex>
@@ -21,24 +22,15 @@ class LineFft {
   fftwf_plan_s* plan_;
 };
 
-/// The same from one line to another, which FFTW does up to three times faster; the bits differ.
-class CopyingLineFft {
+/// The same for the lines of a block (block_fft.h), in place and of any length.
+class AwkwardBlockFft {
  public:
-  CopyingLineFft(int length, FftDirection direction);
-  void operator()(std::complex<float>* from, std::complex<float>* to) const;
+  AwkwardBlockFft(int length, FftDirection direction);
+  void operator()(float* block) const;
 
  private:
   fftwf_plan_s* plan_;
-};
-
-/// The same for eight lines at once, in place: number k of line i is at block[8 * k + i].
-class BlockFft {
- public:
-  BlockFft(int length, FftDirection direction);
-  void operator()(std::complex<float>* block) const;
-
- private:
-  fftwf_plan_s* plan_;
+  FftDirection direction_;
 };
 
 /// How FFTW chooses its algorithms. By default (`estimate`) plans depend on the size alone, so the same seed gives the

@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <cstring>
 #include <functional>
 #include <stdexcept>
 
 #include "methods/base/box_fft.h"
+#include "methods/base/lanes.h"
 #include "methods/base/parallel.h"
 #include "methods/spot/spline_spectrum.h"
 
@@ -19,17 +19,6 @@ namespace {
 
 constexpr int width = BinBlock::width;
 using ColumnSums = std::array<double, width>;
-
-// Eight neighboring bins as they are stored, real and imaginary parts in turn, and one part of them.
-using Bins [[gnu::vector_size(64)]] = float;
-using Parts [[gnu::vector_size(32)]] = float;
-
-inline __attribute__((always_inline)) void load(const float* from, Parts& re, Parts& im) {
-  Bins bins;
-  std::memcpy(&bins, from, sizeof(bins));
-  re = __builtin_shufflevector(bins, bins, 0, 2, 4, 6, 8, 10, 12, 14);
-  im = __builtin_shufflevector(bins, bins, 1, 3, 5, 7, 9, 11, 13, 15);
-}
 
 /// Replaces the bins F of a block of columns by T s, and adds Σ_ky weights[ky] |F − T s|² to the sum of each column.
 /// With the square of no difference of large numbers the sums are accurate however close the two are.
@@ -41,34 +30,36 @@ inline __attribute__((always_inline)) void project_bins(const std::array<const f
   constexpr float smallest = 1e-36F;  // squares below are not normal numbers
   for (int ky = 0; ky < rows; ++ky) {
     const std::ptrdiff_t k = std::ptrdiff_t{ky} * 2 * width;
-    Parts t_re[channels];
-    Parts t_im[channels];
-    Parts f_re[channels];
-    Parts f_im[channels];
-    Parts re{};
-    Parts im{};
+    FloatLanes t_re[channels];
+    FloatLanes t_im[channels];
+    FloatLanes f_re[channels];
+    FloatLanes f_im[channels];
+    FloatLanes re{};
+    FloatLanes im{};
     for (std::size_t c = 0; c < channels; ++c) {
-      load(spot[c] + k, t_re[c], t_im[c]);
-      load(texton[c] + k, f_re[c], f_im[c]);
+      load(spot[c] + k, t_re[c]);
+      load(spot[c] + k + width, t_im[c]);
+      load(texton[c] + k, f_re[c]);
+      load(texton[c] + k + width, f_im[c]);
       re += t_re[c] * f_re[c] + t_im[c] * f_im[c];
       im += t_re[c] * f_im[c] - t_im[c] * f_re[c];
     }
-    const Parts norm = re * re + im * im;
-    Parts root;
+    const FloatLanes norm = re * re + im * im;
+    FloatLanes root;
     for (int i = 0; i < width; ++i) {
       root[i] = std::sqrt(norm[i]);
     }
-    const Parts phase_re = norm < smallest ? Parts{} + 1.0F : re / root;
-    const Parts phase_im = norm < smallest ? Parts{} : im / root;
-    Parts distance{};
+    const FloatLanes phase_re = norm < smallest ? FloatLanes{} + 1.0F : re / root;
+    const FloatLanes phase_im = norm < smallest ? FloatLanes{} : im / root;
+    FloatLanes distance{};
     for (std::size_t c = 0; c < channels; ++c) {
-      const Parts new_re = t_re[c] * phase_re - t_im[c] * phase_im;
-      const Parts new_im = t_re[c] * phase_im + t_im[c] * phase_re;
-      const Parts off_re = f_re[c] - new_re;
-      const Parts off_im = f_im[c] - new_im;
+      const FloatLanes new_re = t_re[c] * phase_re - t_im[c] * phase_im;
+      const FloatLanes new_im = t_re[c] * phase_im + t_im[c] * phase_re;
+      const FloatLanes off_re = f_re[c] - new_re;
+      const FloatLanes off_im = f_im[c] - new_im;
       distance += off_re * off_re + off_im * off_im;
-      const Bins bins = __builtin_shufflevector(new_re, new_im, 0, 8, 1, 9, 2, 10, 3, 11, 4, 12, 5, 13, 6, 14, 7, 15);
-      std::memcpy(texton[c] + k, &bins, sizeof(bins));
+      store(new_re, texton[c] + k);
+      store(new_im, texton[c] + k + width);
     }
     distance *= weights[static_cast<std::size_t>(ky)];
     for (int i = 0; i < width; ++i) {
@@ -118,11 +109,11 @@ class Projection {
 
   void operator()(int first, const BinBlock& block) {
     for (int c = 0; c < layout_.channels() && first == 0; ++c) {
-      block.bins(c)[0] = 0;  // the error leaves ξ = 0 out
+      block.bins(c)[0] = block.bins(c)[width] = 0;  // the error leaves ξ = 0 out
     }
     const auto number = static_cast<std::size_t>(first / width);
-    const auto in = [&](int c) { return reinterpret_cast<const float*>(blocks_[number].bins(c)); };
-    const auto out = [&](int c) { return reinterpret_cast<float*>(block.bins(c)); };
+    const auto in = [&](int c) { return static_cast<const float*>(blocks_[number].bins(c)); };
+    const auto out = [&](int c) { return block.bins(c); };
     ColumnSums sums{};
     if (layout_.channels() == 1) {
       project_gray(in(0), row_weights_, out(0), sums);
@@ -144,11 +135,13 @@ class Projection {
   }
 
  private:
-  void divide_by_gain(int first, std::complex<float>* bins) const {
+  void divide_by_gain(int first, float* bins) const {
     const int columns = std::min(width, layout_.columns() - first);
     for (int ky = 0; ky < layout_.rows(); ++ky) {
       for (int i = 0; i < columns; ++i) {
-        bins[std::ptrdiff_t{ky} * width + i] /= static_cast<float>(gain_.column(first + i) * gain_.row(ky));
+        const auto gain = static_cast<float>(gain_.column(first + i) * gain_.row(ky));
+        bins[std::ptrdiff_t{ky} * 2 * width + i] /= gain;
+        bins[std::ptrdiff_t{ky} * 2 * width + width + i] /= gain;
       }
     }
   }

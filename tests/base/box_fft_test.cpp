@@ -58,7 +58,10 @@ void multiply_block(Extent raster, int channels, int first, const BinBlock& bloc
   for (int c = 0; c < channels; ++c) {
     for (int ky = 0; ky < raster.height; ++ky) {
       for (int i = 0; i < BinBlock::width && first + i <= raster.width / 2; ++i) {
-        block.bins(c)[8 * ky + i] *= factor(c, first + i, ky);
+        float* bin = block.bins(c) + 16 * ky + i;
+        const std::complex<float> product = std::complex(bin[0], bin[8]) * factor(c, first + i, ky);
+        bin[0] = product.real();
+        bin[8] = product.imag();
       }
     }
   }
