@@ -19,6 +19,8 @@ namespace {
 
 constexpr int width = BinBlock::width;
 using ColumnSums = std::array<double, width>;
+template <class Number>
+using ChannelPointers = std::array<Number*, Image::max_channels>;
 
 // Eight neighboring bins as they are stored, real and imaginary parts in turn, and one part of them.
 using Bins [[gnu::vector_size(64)]] = float;
@@ -32,22 +34,23 @@ inline __attribute__((always_inline)) void load(const float* from, Parts& re, Pa
 }
 
 /// Replaces the bins F of a block of columns by T s, and adds Σ_ky weights[ky] |F − T s|² to the sum of each column.
-/// With the square of no difference of large numbers the sums are accurate however close the two are.
-template <std::size_t channels>
-inline __attribute__((always_inline)) void project_bins(const std::array<const float*, channels>& spot,
+/// With the square of no difference of large numbers the sums are accurate however close the two are. Inlined, so that
+/// loops over a constant number of channels unroll.
+inline __attribute__((always_inline)) void project_bins(int channels, const ChannelPointers<const float>& spot,
                                                         const std::vector<float>& weights,
-                                                        const std::array<float*, channels>& texton, ColumnSums& sums) {
+                                                        const ChannelPointers<float>& texton, ColumnSums& sums) {
   const int rows = static_cast<int>(weights.size());
   constexpr float smallest = 1e-36F;  // squares below are not normal numbers
   for (int ky = 0; ky < rows; ++ky) {
     const std::ptrdiff_t k = std::ptrdiff_t{ky} * 2 * width;
-    Parts t_re[channels];
-    Parts t_im[channels];
-    Parts f_re[channels];
-    Parts f_im[channels];
+    Parts t_re[Image::max_channels];
+    Parts t_im[Image::max_channels];
+    Parts f_re[Image::max_channels];
+    Parts f_im[Image::max_channels];
     Parts re{};
     Parts im{};
-    for (std::size_t c = 0; c < channels; ++c) {
+    for (int i = 0; i < channels; ++i) {
+      const auto c = static_cast<std::size_t>(i);
       load(spot[c] + k, t_re[c], t_im[c]);
       load(texton[c] + k, f_re[c], f_im[c]);
       re += t_re[c] * f_re[c] + t_im[c] * f_im[c];
@@ -61,7 +64,8 @@ inline __attribute__((always_inline)) void project_bins(const std::array<const f
     const Parts phase_re = norm < smallest ? Parts{} + 1.0F : re / root;
     const Parts phase_im = norm < smallest ? Parts{} : im / root;
     Parts distance{};
-    for (std::size_t c = 0; c < channels; ++c) {
+    for (int i = 0; i < channels; ++i) {
+      const auto c = static_cast<std::size_t>(i);
       const Parts new_re = t_re[c] * phase_re - t_im[c] * phase_im;
       const Parts new_im = t_re[c] * phase_im + t_im[c] * phase_re;
       const Parts off_re = f_re[c] - new_re;
@@ -77,17 +81,23 @@ inline __attribute__((always_inline)) void project_bins(const std::array<const f
   }
 }
 
-__attribute__((target_clones("default", "avx2", "avx512f"))) void project_gray(const float* spot,
+__attribute__((target_clones("default", "avx2", "avx512f"))) void project_gray(const ChannelPointers<const float>& spot,
                                                                                const std::vector<float>& weights,
-                                                                               float* texton, ColumnSums& sums) {
-  project_bins<1>({spot}, weights, {texton}, sums);
+                                                                               const ChannelPointers<float>& texton,
+                                                                               ColumnSums& sums) {
+  project_bins(1, spot, weights, texton, sums);
 }
 
-__attribute__((target_clones("default", "avx2", "avx512f"))) void project_color(const std::array<const float*, 3>& spot,
-                                                                                const std::vector<float>& weights,
-                                                                                const std::array<float*, 3>& texton,
-                                                                                ColumnSums& sums) {
-  project_bins<3>(spot, weights, texton, sums);
+__attribute__((target_clones("default", "avx2", "avx512f"))) void project_color(
+    const ChannelPointers<const float>& spot, const std::vector<float>& weights, const ChannelPointers<float>& texton,
+    ColumnSums& sums) {
+  project_bins(3, spot, weights, texton, sums);
+}
+
+__attribute__((target_clones("default", "avx2", "avx512f"))) void project_stack(
+    int channels, const ChannelPointers<const float>& spot, const std::vector<float>& weights,
+    const ChannelPointers<float>& texton, ColumnSums& sums) {
+  project_bins(channels, spot, weights, texton, sums);
 }
 
 /// The projection of spectra onto those of modulus T = T_u / b̂^{1/2}, block of columns by block.
@@ -121,13 +131,20 @@ class Projection {
       block.bins(c)[0] = 0;  // the error leaves ξ = 0 out
     }
     const auto number = static_cast<std::size_t>(first / width);
-    const auto in = [&](int c) { return reinterpret_cast<const float*>(blocks_[number].bins(c)); };
-    const auto out = [&](int c) { return reinterpret_cast<float*>(block.bins(c)); };
+    ChannelPointers<const float> in{};
+    ChannelPointers<float> out{};
+    for (int i = 0; i < layout_.channels(); ++i) {
+      const auto c = static_cast<std::size_t>(i);
+      in[c] = reinterpret_cast<const float*>(blocks_[number].bins(i));
+      out[c] = reinterpret_cast<float*>(block.bins(i));
+    }
     ColumnSums sums{};
     if (layout_.channels() == 1) {
-      project_gray(in(0), row_weights_, out(0), sums);
+      project_gray(in, row_weights_, out, sums);
+    } else if (layout_.channels() == 3) {
+      project_color(in, row_weights_, out, sums);
     } else {
-      project_color({in(0), in(1), in(2)}, row_weights_, {out(0), out(1), out(2)}, sums);
+      project_stack(layout_.channels(), in, row_weights_, out, sums);
     }
     sums_[number] = sums;
   }
@@ -190,7 +207,6 @@ void require_projectable(const GaussianModel& model, const Support& support, con
   };
   require(model.spectrum.factors.size() == 1,
           fmt::format("a model of {} factors, expected 1", model.spectrum.factors.size()));
-  require(spot.channels() == 1 || spot.channels() == 3, fmt::format("{} channels, expected 1 or 3", spot.channels()));
   require(
       start.raster() == spot.raster() && start.channels() == spot.channels(),
       fmt::format("a start of {}x{}x{}, expected the exemplar's {}x{}x{}", start.raster().width, start.raster().height,
