@@ -224,7 +224,10 @@ ExemplarInfo find_exemplar(const ExemplarCatalog& catalog, const std::string& na
   const bool known = std::any_of(catalog.all().begin(), catalog.all().end(),
                                  [&](const ExemplarInfo& info) { return info.name == name_or_file; });
   if (known) return catalog.find(name_or_file);
-  if (name_or_file.find('+') != std::string::npos && !fs::exists(path)) return find_stack(catalog, name_or_file);
+  std::error_code ignored;
+  if (name_or_file.find('+') != std::string::npos && !fs::exists(path, ignored)) {
+    return find_stack(catalog, name_or_file);
+  }
   if (!path.has_extension() && !path.has_parent_path()) return catalog.find(name_or_file);
   ExemplarInfo info;
   info.name = path.stem().string();
