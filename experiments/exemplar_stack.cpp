@@ -11,7 +11,7 @@ namespace textonbench {
 namespace {
 
 /// Where a map comes from, for messages.
-std::string place_of(const ExemplarInfo& info) { return info.file.empty() ? info.name : info.file.string(); }
+std::string origin_of_map(const ExemplarInfo& info) { return info.file.empty() ? info.name : info.file.string(); }
 
 }  // namespace
 
@@ -44,8 +44,8 @@ Exemplar load_stack(const ExemplarInfo& info, std::vector<std::string>* notes) {
     Exemplar loaded = load_exemplar(part, notes);
     if (!pictures.empty() && loaded.pixels.extent() != pictures.front().extent()) {
       throw std::invalid_argument(fmt::format("{} has {}x{} pixels and {} has {}x{}: expected maps of one size",
-                                              place_of(info.maps.front()), pictures.front().width(),
-                                              pictures.front().height(), place_of(part), loaded.pixels.width(),
+                                              origin_of_map(info.maps.front()), pictures.front().width(),
+                                              pictures.front().height(), origin_of_map(part), loaded.pixels.width(),
                                               loaded.pixels.height()));
     }
     if (loaded.maps.empty()) {
