@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <span>
 #include <stdexcept>
 
 #include "experiments/metrics/gaussian_limit.h"
@@ -224,7 +225,9 @@ class Execution {
   std::vector<Image> floor_samples_;
 };
 
-Record keep(const Image& picture, const std::string& name, const ResultsFolder& results) {
+/// A stack is kept as one picture of its maps side by side.
+Record keep(const Image& made, std::span<const ImageMap> maps, const std::string& name, const ResultsFolder& results) {
+  const Image picture = maps.empty() ? Image(made) : side_by_side(made, maps);
   const std::filesystem::path folder = results.path() / "pictures";
   std::filesystem::create_directories(folder);
   const std::filesystem::path draft = folder / fmt::format(".draft_{}_{}.png", ::getpid(), name);
@@ -279,7 +282,7 @@ Record execute(const RunSpec& spec, const ExemplarCatalog& exemplars, const Resu
       }
     }
     for (const std::string& name : spec.pictures) {
-      record["pictures"][name] = keep(execution.picture(find_picture(name)), name, *results);
+      record["pictures"][name] = keep(execution.picture(find_picture(name)), exemplar.maps, name, *results);
     }
   }
   record["time"] = {{"wall_seconds", seconds_since(start)},

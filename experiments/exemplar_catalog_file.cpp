@@ -60,19 +60,46 @@ std::string read_sha256(const TomlValue& value) {
   return digits;
 }
 
-CatalogRow read_row(const TomlValue& value, const Packages& packages) {
-  TableReader reader(value, "[[exemplar]]");
+CatalogRow blank_row(std::string name, const Package& package) {
   CatalogRow row;
-  row.info.name = read_identifier(reader.require("name").value, "name");
-  const Package& package = find_package(packages, reader.require("package").value);
+  row.info.name = std::move(name);
   row.info.source = package.source;
   row.info.licence = package.licence;
   row.info.how_to_get = package.how_to_get;
-  if (!package.folder.empty()) {
-    row.installed = package.folder / read_text(reader.require("file").value, "file");
+  return row;
+}
+
+std::vector<CatalogRow> read_maps(const TomlValue& files, const TomlEntry* sha256, const Package& package) {
+  std::vector<CatalogRow> maps;
+  for (const std::string& text : read_texts(files, "files")) {
+    const std::filesystem::path file = text;
+    maps.push_back(blank_row(file.stem().string(), package));
+    if (!package.folder.empty()) maps.back().installed = package.folder / file;
   }
-  if (const TomlEntry* sha256 = reader.find("sha256")) {
-    row.info.expected_sha256 = read_sha256(sha256->value);
+  if (maps.size() < 2) throw ConfigError(files.place, "files: expected the files of at least two maps");
+  if (sha256 != nullptr) {
+    const std::vector<TomlValue>& list = read_list(sha256->value, "sha256");
+    if (list.size() != maps.size()) {
+      throw ConfigError(sha256->value.place,
+                        fmt::format("sha256: expected {}, one a file, found {}", maps.size(), list.size()));
+    }
+    for (std::size_t i = 0; i < list.size(); ++i) maps[i].info.expected_sha256 = read_sha256(list[i]);
+  }
+  return maps;
+}
+
+CatalogRow read_row(const TomlValue& value, const Packages& packages) {
+  TableReader reader(value, "[[exemplar]]");
+  std::string name = read_identifier(reader.require("name").value, "name");
+  const Package& package = find_package(packages, reader.require("package").value);
+  CatalogRow row = blank_row(std::move(name), package);
+  const TomlEntry* files = reader.find("files");
+  const TomlEntry* sha256 = reader.find("sha256");
+  if (files != nullptr) {
+    row.maps = read_maps(files->value, sha256, package);
+  } else {
+    if (!package.folder.empty()) row.installed = package.folder / read_text(reader.require("file").value, "file");
+    if (sha256 != nullptr) row.info.expected_sha256 = read_sha256(sha256->value);
   }
   if (const TomlEntry* tags = reader.find("tags")) {
     row.info.tags = read_texts(tags->value, "tags");

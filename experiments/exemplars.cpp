@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "experiments/exemplar_catalog_file.h"
+#include "experiments/exemplar_stack.h"
 #include "experiments/procedural_exemplars.h"
 #include "experiments/provenance.h"
 #include "methods/base/image_io.h"
@@ -23,6 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* data_variable = "TEXTONBENCH_DATA";
+
+using DataFiles = std::map<std::string, std::vector<fs::path>>;
 
 bool is_picture(const fs::path& file) {
   std::string extension = file.extension().string();
@@ -36,8 +39,8 @@ bool is_picture(const fs::path& file) {
 }
 
 /// Pictures of the user's folder by file name without extension, in alphabetical order.
-std::map<std::string, std::vector<fs::path>> read_data_folder() {
-  std::map<std::string, std::vector<fs::path>> files;
+DataFiles read_data_folder() {
+  DataFiles files;
   const char* value = std::getenv(data_variable);
   if (value == nullptr || *value == '\0') {
     return files;
@@ -67,8 +70,43 @@ std::optional<std::string> mismatch(const fs::path& file, const std::string& exp
   return fmt::format("{} is another picture (SHA-256 {}, expected {})", file.string(), found, expected);
 }
 
+const std::vector<fs::path>& files_named(const DataFiles& data, const std::string& name) {
+  static const std::vector<fs::path> none;
+  const auto found = data.find(name);
+  return found == data.end() ? none : found->second;
+}
+
+/// Whoever's picture has the name of an exemplar that no picture can be stands in the way.
+void refuse_own_file(ExemplarInfo& info, const std::vector<fs::path>& own, const char* kind) {
+  if (!own.empty()) {
+    info.available = false;
+    info.file = own.front();
+    info.how_to_get = fmt::format("{} has the name of a {}: rename it", info.file.string(), kind);
+  }
+}
+
+ExemplarInfo locate(CatalogRow row, const DataFiles& data);
+
+ExemplarInfo locate_stack(CatalogRow row, const DataFiles& data) {
+  ExemplarInfo& info = row.info;
+  info.available = true;
+  for (CatalogRow& map : row.maps) {
+    const ExemplarInfo& found = info.maps.emplace_back(locate(std::move(map), data));
+    if (!found.available && info.available) {
+      info.available = false;
+      info.file = found.file;
+      info.how_to_get = fmt::format("map {}: {}", found.name, found.how_to_get);
+    }
+  }
+  refuse_own_file(info, files_named(data, info.name), "stack of maps");
+  return info;
+}
+
 /// Decides whether the exemplar is here, and with which file: the installed one, or the user's own of that name.
-ExemplarInfo locate(CatalogRow row, const std::vector<fs::path>& own) {
+ExemplarInfo locate(CatalogRow row, const DataFiles& data) {
+  if (!row.maps.empty()) {
+    return locate_stack(std::move(row), data);
+  }
   ExemplarInfo& info = row.info;
   if (std::error_code error; fs::is_regular_file(row.installed, error)) {
     if (const auto wrong = mismatch(row.installed, info.expected_sha256)) {
@@ -77,7 +115,7 @@ ExemplarInfo locate(CatalogRow row, const std::vector<fs::path>& own) {
       info.file = row.installed;
     }
   }
-  for (const fs::path& candidate : own) {
+  for (const fs::path& candidate : files_named(data, info.name)) {
     if (const auto wrong = mismatch(candidate, info.expected_sha256)) {
       info.file = candidate;
       info.how_to_get = fmt::format("{}: rename or remove it; {}", *wrong, info.how_to_get);
@@ -99,7 +137,8 @@ ExemplarInfo procedural_info(const ProceduralExemplar& exemplar) {
           .licence = "CC0-1.0",
           .how_to_get = {},
           .expected_sha256 = {},
-          .tags = {"default", "procedural", "micro"}};
+          .tags = exemplar.maps.empty() ? std::vector<std::string>{"default", "procedural", "micro"}
+                                        : std::vector<std::string>{"stack"}};
 }
 
 ExemplarInfo own_info(const std::string& name, const std::vector<fs::path>& files) {
@@ -137,16 +176,11 @@ void require_available(const ExemplarInfo& info) {
 ExemplarCatalog::ExemplarCatalog(const fs::path& home) {
   auto data = read_data_folder();
   for (CatalogRow& row : read_exemplar_catalog(home / "configs" / "exemplars.toml")) {
-    const std::string name = row.info.name;
-    all_.push_back(locate(std::move(row), data[name]));
+    all_.push_back(locate(std::move(row), data));
   }
   for (const ProceduralExemplar& exemplar : procedural_exemplars()) {
     ExemplarInfo info = procedural_info(exemplar);
-    if (const auto own = data.find(info.name); own != data.end()) {
-      info.available = false;
-      info.file = own->second.front();
-      info.how_to_get = fmt::format("{} has the name of a procedural exemplar: rename it", info.file.string());
-    }
+    refuse_own_file(info, files_named(data, info.name), "procedural exemplar");
     all_.push_back(std::move(info));
   }
   for (const ExemplarInfo& known : all_) {
@@ -189,7 +223,12 @@ ExemplarInfo find_exemplar(const ExemplarCatalog& catalog, const std::string& na
   const std::filesystem::path path = name_or_file;
   const bool known = std::any_of(catalog.all().begin(), catalog.all().end(),
                                  [&](const ExemplarInfo& info) { return info.name == name_or_file; });
-  if (known || (!path.has_extension() && !path.has_parent_path())) return catalog.find(name_or_file);
+  if (known) return catalog.find(name_or_file);
+  std::error_code ignored;
+  if (name_or_file.find('+') != std::string::npos && !fs::exists(path, ignored)) {
+    return find_stack(catalog, name_or_file);
+  }
+  if (!path.has_extension() && !path.has_parent_path()) return catalog.find(name_or_file);
   ExemplarInfo info;
   info.name = path.stem().string();
   info.available = true;
@@ -200,6 +239,11 @@ ExemplarInfo find_exemplar(const ExemplarCatalog& catalog, const std::string& na
 
 std::string exemplar_sha256(const ExemplarInfo& info) {
   require_available(info);
+  if (!info.maps.empty()) {
+    std::string maps = "stack of maps";
+    for (const ExemplarInfo& map : info.maps) maps += fmt::format(", {} {}", map.name, exemplar_sha256(map));
+    return sha256(maps);
+  }
   if (info.file.empty()) {
     return sha256(fmt::format("procedural exemplar {}, seed {}, definition {}", info.name,
                               find_procedural(info.name).seed.value, procedural_definition));
@@ -209,8 +253,12 @@ std::string exemplar_sha256(const ExemplarInfo& info) {
 
 Exemplar load_exemplar(const ExemplarInfo& info, std::vector<std::string>* notes) {
   require_available(info);
+  if (!info.maps.empty()) {
+    return load_stack(info, notes);
+  }
   if (info.file.empty()) {
-    return {info.name, draw_procedural(info.name, find_procedural(info.name).seed), exemplar_sha256(info)};
+    const ProceduralExemplar& exemplar = find_procedural(info.name);
+    return {info.name, draw_procedural(info.name, exemplar.seed), exemplar_sha256(info), exemplar.maps};
   }
   if (const auto wrong = mismatch(info.file, info.expected_sha256)) {
     throw std::invalid_argument(fmt::format("exemplar \"{}\": {}", info.name, *wrong));
@@ -219,7 +267,7 @@ Exemplar load_exemplar(const ExemplarInfo& info, std::vector<std::string>* notes
   if (notes != nullptr) {
     notes->insert(notes->end(), result.notes.begin(), result.notes.end());
   }
-  return {info.name, std::move(result.image), sha256_of_file(info.file)};
+  return {info.name, std::move(result.image), sha256_of_file(info.file), std::move(result.maps)};
 }
 
 }  // namespace textonbench

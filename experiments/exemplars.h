@@ -14,14 +14,15 @@ namespace textonbench {
 struct ExemplarInfo {
   std::string name;
   bool available = false;
-  /// Empty for a procedural exemplar and for one that was not found. Of one that is not available: a file in
-  /// TEXTONBENCH_DATA that has its name and is something else.
+  /// Empty for a procedural exemplar, for a stack of maps and for one that was not found. Of one that is not available:
+  /// a file in TEXTONBENCH_DATA that has its name, or that of one of its maps, and is something else.
   std::filesystem::path file;
   std::string source;  ///< "Debian mypaint-data-extras", "procedural, seed 1", "TEXTONBENCH_DATA", …
   std::string licence;
-  std::string how_to_get;         ///< for one that is not here
-  std::string expected_sha256;    ///< empty when any file of that name will do
-  std::vector<std::string> tags;  ///< "default", "micro", "structured", "procedural", "paper"
+  std::string how_to_get;               ///< for one that is not here
+  std::string expected_sha256;          ///< empty when any file of that name will do
+  std::vector<std::string> tags;        ///< "default", "micro", "structured", "procedural", "paper", "stack"
+  std::vector<ExemplarInfo> maps = {};  ///< of a stack that several pictures make, in order
 };
 
 class ExemplarCatalog {
@@ -31,8 +32,8 @@ class ExemplarCatalog {
   ///
   /// An exemplar with a known SHA-256 is available when a file with that SHA-256 lies in its package's folder or, as
   /// NAME.png (jpg, jpeg, tif, tiff, exr), in TEXTONBENCH_DATA. A file of that name with other bytes never stands in
-  /// for it: how_to_get then says which file is wrong. Every other picture in TEXTONBENCH_DATA is an exemplar named by
-  /// its file name without extension.
+  /// for it: how_to_get then says which file is wrong. A stack is available when each of its maps is, which are sought
+  /// in the same way. Every other picture in TEXTONBENCH_DATA is an exemplar named by its file name without extension.
   explicit ExemplarCatalog(const std::filesystem::path& home);
 
   const std::vector<ExemplarInfo>& all() const { return all_; }
@@ -47,13 +48,16 @@ class ExemplarCatalog {
   std::vector<ExemplarInfo> all_;
 };
 
-/// A catalogue name, or the path of a picture file. Throws as ExemplarCatalog::find for a name.
+/// A catalogue name, or the path of a picture file, or several of them joined by "+": a stack of maps, named by its
+/// files without extension. Throws as ExemplarCatalog::find for a name, and for a name or file missing beside a "+".
 ExemplarInfo find_exemplar(const ExemplarCatalog& catalog, const std::string& name_or_file);
 
-/// SHA-256 of the file's bytes; of a procedural exemplar, of its name, seed and definition. Cheap: decodes nothing.
+/// SHA-256 of the file's bytes; of a procedural exemplar, of its name, seed and definition; of a stack, of the names
+/// and SHA-256 of its maps. Cheap: decodes nothing.
 std::string exemplar_sha256(const ExemplarInfo& info);
 
-/// Reads (or makes) the pixels. `notes` receives what image_io changed. Throws when the file is not the expected one.
+/// Reads (or makes) the pixels. `notes` receives what image_io changed. Throws when the file is not the expected one;
+/// of a stack also when sizes differ, a name comes twice, or there are more than 8 channels.
 Exemplar load_exemplar(const ExemplarInfo& info, std::vector<std::string>* notes = nullptr);
 
 }  // namespace textonbench

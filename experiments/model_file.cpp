@@ -89,7 +89,7 @@ ParamValue param_of(const ModelReader& reader, const std::string& name, const Js
 Image read_kernel(const ModelReader& reader, const Json& json) {
   const auto width = static_cast<int>(reader.whole(json, "width", 1, largest_side));
   const auto height = static_cast<int>(reader.whole(json, "height", 1, largest_side));
-  const auto channels = static_cast<int>(reader.whole(json, "channels", 1, 3));
+  const auto channels = static_cast<int>(reader.whole(json, "channels", 1, Image::max_channels));
   const Json& values = reader.list(json, "values");
   if (std::ssize(values) != std::int64_t{width} * height * channels) {
     reader.refuse("values", fmt::format("{} x {} x {} numbers, found {}", width, height, channels, values.size()));
@@ -102,6 +102,20 @@ Image read_kernel(const ModelReader& reader, const Json& json) {
     }
   }
   return kernel;
+}
+
+std::vector<ImageMap> read_maps_of_model(const ModelReader& reader, int channels) {
+  std::vector<ImageMap> maps;
+  if (!reader.json().contains("maps")) return maps;
+  int total = 0;
+  for (const Json& json : reader.list(reader.json(), "maps")) {
+    const ImageMap& map = maps.emplace_back(ImageMap{
+        .name = reader.text(json, "name"), .channels = static_cast<int>(reader.whole(json, "channels", 1, 3))});
+    if (map.name.empty() || map.channels == 2) reader.refuse("maps", "named maps of 1 or 3 channels");
+    total += map.channels;
+  }
+  if (total != channels) reader.refuse("maps", fmt::format("maps of {} channels in all", channels));
+  return maps;
 }
 
 Json kernel_json(const Image& kernel) {
@@ -146,6 +160,7 @@ ModelFile read_model_file(const std::filesystem::path& file) {
   if (std::ssize(model.texton.mean) != model.texton.channels()) {
     reader.refuse("mean", fmt::format("{} numbers, one a channel", model.texton.channels()));
   }
+  model.maps = read_maps_of_model(reader, model.texton.channels());
   model.texton.support_pixels = reader.whole(json, "support_pixels", 1, model.texton.extent().area());
   if (json.contains("order")) {
     model.order = static_cast<int>(reader.whole(json, "order", 0, max_bspline_order));
@@ -174,6 +189,9 @@ void write_model_file(const ModelFile& model, const std::filesystem::path& file)
                {"mean", model.texton.mean},
                {"support_pixels", model.texton.support_pixels},
                {"kernels", std::move(kernels)}};
+  for (const ImageMap& map : model.maps) {
+    json["maps"].push_back({{"name", map.name}, {"channels", map.channels}});
+  }
   if (model.order) {
     json["order"] = *model.order;
     json["support_area"] = model.support_area;

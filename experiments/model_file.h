@@ -3,7 +3,8 @@
 // JSON: {"format": "textonbench model", "version": 1, "method", "params" {NAME: value}, "exemplar" {"name", "sha256"},
 // "seed", "mean" [one number a channel], "support_pixels", "kernels" [{"width", "height", "channels", "values":
 // [channel by channel, row by row, top row first]}]}. Where the kernels are the coefficients of B-splines of the plane
-// "order" and "support_area" (methods/base/texton.h) are there as well. Numbers are written so that reading gives the
+// "order" and "support_area" (methods/base/texton.h) are there as well, and for a stack of maps "maps" [{"name",
+// "channels"}], in the order of their channels. Numbers are written so that reading gives the
 // same float32.
 #pragma once
 
@@ -12,7 +13,9 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "methods/base/image_maps.h"
 #include "methods/base/params.h"
 #include "methods/base/texton.h"
 
@@ -26,6 +29,7 @@ struct ModelFile {
   Texton texton;                            ///< kernels of a spot noise on Z², or coefficients of B-splines
   std::optional<int> order = std::nullopt;  ///< of the B-splines; nothing for a spot noise
   double support_area = 0;                  ///< of the B-splines, pixels²
+  std::vector<ImageMap> maps = {};          ///< of a stack, in the order of their channels
 
   /// The coefficients as what methods/spot/spline_noise.h draws. `order` is set.
   SplineTexton spline_texton() const { return {texton, order.value(), support_area}; }

@@ -19,7 +19,7 @@ struct PictureSource {
 struct PictureEntry {
   std::string_view name;  ///< "sample", "sample_2", "sample_3", "exemplar", "periodic_component", "smooth_component", …
   std::string_view title;
-  Image (*make)(const PictureSource&);
+  Image (*make)(const PictureSource&);  ///< as many channels as the exemplar
 };
 
 /// sample, sample_2, sample_3 (the first three samples), exemplar, periodic_component, smooth_component (plus 1/2),

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -15,18 +16,21 @@
 namespace textonbench {
 namespace {
 
-constexpr int channels = 3;
-using Mixing = std::array<std::array<double, channels>, channels>;
+constexpr int noises = 3;
+/// A row a channel.
+using Mixing = std::vector<std::array<double, noises>>;
 
 /// A power spectrum up to a factor, as a function of frequency in cycles a pixel, each component in [−1/2, 1/2].
 using Shape = double (*)(double fx, double fy);
 
 struct Law {
   ProceduralExemplar exemplar;
-  std::array<double, channels> mean;
-  std::array<double, channels> deviation;  ///< standard deviation of each channel
-  Mixing mixing;                           ///< rows are scaled to unit length
+  std::vector<double> mean;
+  std::vector<double> deviation;  ///< standard deviation of each channel
+  Mixing mixing;                  ///< rows are scaled to unit length
   Shape shape;
+
+  int channels() const { return static_cast<int>(mean.size()); }
 };
 
 double square(double x) { return x * x; }
@@ -51,29 +55,37 @@ double oriented_lobe(double fx, double fy) {
 /// Power 1/|f|², as of natural pictures.
 double power_law(double fx, double fy) { return 1 / (square(fx) + square(fy)); }
 
-const std::array<Law, 4>& laws() {
-  static const std::array<Law, 4> table{{
+const std::vector<Law>& laws() {
+  static const std::vector<Law> table{
       {.exemplar = {"white_noise", "white noise with correlated colors", Seed{1}},
        .mean = {0.50, 0.50, 0.50},
        .deviation = {0.09, 0.09, 0.09},
-       .mixing = {{{1.0, 0.4, 0.0}, {0.4, 1.0, 0.4}, {0.0, 0.4, 1.0}}},
+       .mixing = {{1.0, 0.4, 0.0}, {0.4, 1.0, 0.4}, {0.0, 0.4, 1.0}},
        .shape = white},
       {.exemplar = {"ring", "annulus of frequencies around 1/12 cycles a pixel", Seed{1}},
        .mean = {0.45, 0.50, 0.55},
        .deviation = {0.08, 0.09, 0.07},
-       .mixing = {{{1.0, 0.0, 0.3}, {0.8, 0.6, 0.0}, {0.3, 0.5, 0.8}}},
+       .mixing = {{1.0, 0.0, 0.3}, {0.8, 0.6, 0.0}, {0.3, 0.5, 0.8}},
        .shape = ring},
       {.exemplar = {"oriented_lobe", "two Gaussian lobes at 0.1 cycles a pixel, 30 degrees", Seed{1}},
        .mean = {0.55, 0.50, 0.45},
        .deviation = {0.09, 0.08, 0.07},
-       .mixing = {{{1.0, 0.3, 0.0}, {0.9, 0.0, 0.4}, {0.4, -0.8, 0.3}}},
+       .mixing = {{1.0, 0.3, 0.0}, {0.9, 0.0, 0.4}, {0.4, -0.8, 0.3}},
        .shape = oriented_lobe},
       {.exemplar = {"power_law", "power 1/f² with correlated colors", Seed{1}},
        .mean = {0.52, 0.50, 0.47},
        .deviation = {0.09, 0.09, 0.08},
-       .mixing = {{{1.0, 0.3, 0.0}, {0.9, 0.0, 0.3}, {0.8, -0.4, 0.2}}},
+       .mixing = {{1.0, 0.3, 0.0}, {0.9, 0.0, 0.3}, {0.8, -0.4, 0.2}},
        .shape = power_law},
-  }};
+      {.exemplar = {"color_and_height",
+                    "annulus of frequencies around 1/12 cycles a pixel, in a color and a height map",
+                    Seed{1},
+                    {{"color", 3}, {"height", 1}}},
+       .mean = {0.55, 0.50, 0.45, 0.50},
+       .deviation = {0.07, 0.08, 0.09, 0.08},
+       .mixing = {{1.0, 0.3, -0.3}, {0.8, 0.0, -0.6}, {0.6, -0.4, -0.7}, {0.0, 0.0, 1.0}},
+       .shape = ring},
+  };
   return table;
 }
 
@@ -92,7 +104,7 @@ const Law& find_law(std::string_view name) {
 /// M: rows of the stated direction, as long as the channel's standard deviation.
 Mixing scaled_mixing(const Law& law) {
   Mixing mixing = law.mixing;
-  for (std::size_t c = 0; c < channels; ++c) {
+  for (std::size_t c = 0; c < mixing.size(); ++c) {
     const double length = std::hypot(mixing[c][0], mixing[c][1], mixing[c][2]);
     for (double& weight : mixing[c]) {
       weight *= law.deviation[c] / length;
@@ -142,45 +154,46 @@ Image draw_procedural(std::string_view name, Seed seed) {
   const std::vector<double> s = scalar_spectrum(law.shape);
   const Stream stream = Stream(seed).child("procedural_exemplar").child(name);
 
-  Image noise(procedural_extent, channels);
-  for (int k = 0; k < channels; ++k) {
+  Image noise(procedural_extent, noises);
+  for (int k = 0; k < noises; ++k) {
     const Stream plane = stream.child(static_cast<std::uint64_t>(k));
     for (int y = 0; y < noise.height(); ++y) {
       fill_normal(plane, static_cast<std::uint64_t>(y), 0, noise.row(k, y));
     }
   }
 
-  Spectrum spectrum = forward_fft(noise);
+  const Spectrum white_spectrum = forward_fft(noise);
+  Spectrum spectrum = Spectrum::uninitialized(procedural_extent, law.channels());
   std::size_t bin = 0;
   for (int ky = 0; ky < spectrum.rows(); ++ky) {
     for (int kx = 0; kx < spectrum.columns(); ++kx, ++bin) {
-      std::array<std::complex<double>, channels> w;
-      for (int k = 0; k < channels; ++k) {
-        w[static_cast<std::size_t>(k)] = spectrum.at(k, kx, ky);
+      std::array<std::complex<double>, noises> w;
+      for (int k = 0; k < noises; ++k) {
+        w[static_cast<std::size_t>(k)] = white_spectrum.at(k, kx, ky);
       }
-      for (int c = 0; c < channels; ++c) {
+      for (int c = 0; c < law.channels(); ++c) {
         const auto& m = mixing[static_cast<std::size_t>(c)];
         spectrum.at(c, kx, ky) = std::complex<float>(s[bin] * (m[0] * w[0] + m[1] * w[1] + m[2] * w[2]));
       }
     }
   }
-  for (int c = 0; c < channels; ++c) {
+  for (int c = 0; c < law.channels(); ++c) {
     const double sum = law.mean[static_cast<std::size_t>(c)] * static_cast<double>(procedural_extent.area());
     spectrum.at(c, 0, 0) = static_cast<float>(sum);
   }
   return inverse_fft(spectrum);
 }
 
-std::array<double, channels> known_mean(std::string_view name) { return find_law(name).mean; }
+std::vector<double> known_mean(std::string_view name) { return find_law(name).mean; }
 
 CrossSpectrum known_spectrum(std::string_view name) {
   const Law& law = find_law(name);
   const Mixing mixing = scaled_mixing(law);
   const std::vector<double> s = scalar_spectrum(law.shape);
   CrossSpectrum p;
-  for (std::size_t k = 0; k < channels; ++k) {
-    Spectrum factor(procedural_extent, channels);
-    for (int c = 0; c < channels; ++c) {
+  for (std::size_t k = 0; k < noises; ++k) {
+    Spectrum factor(procedural_extent, law.channels());
+    for (int c = 0; c < law.channels(); ++c) {
       for (int ky = 0; ky < factor.rows(); ++ky) {
         for (int kx = 0; kx < factor.columns(); ++kx) {
           const auto bin = static_cast<std::size_t>(std::int64_t{ky} * factor.columns() + kx);

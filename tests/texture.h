@@ -23,7 +23,7 @@ namespace textonbench {
 inline Image test_texture(Extent extent, int channels, std::uint64_t seed = 1) {
   Image image(extent, channels);
   const Stream stream = Stream(Seed{seed}).child("test texture");
-  std::vector<float> white(static_cast<std::size_t>(extent.width + 4));
+  std::vector<float> white(static_cast<std::size_t>(extent.width + 1 + Image::max_channels));
   for (int y = 0; y < extent.height; ++y) {
     fill_normal(stream, static_cast<std::uint64_t>(y), 0, white);
     for (int x = 0; x < extent.width; ++x) {

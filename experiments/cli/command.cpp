@@ -42,7 +42,10 @@ void print_json(const nlohmann::ordered_json& document) { fmt::print("{}\n", doc
 
 void ModelOptions::add_method_to(CLI::App& app, bool required) {
   app.add_option("METHOD", method, "Method (textonbench list methods)")->required(required);
-  app.add_option("EXEMPLAR", exemplar, "Exemplar (textonbench list exemplars) or a picture file")->required(required);
+  app.add_option("EXEMPLAR", exemplar,
+                 "Exemplar (textonbench list exemplars) or a picture file; or maps of one surface joined by +, modeled "
+                 "together, of at most 8 channels in all (albedo.png+normal.png+height.png)")
+      ->required(required);
 }
 
 void ModelOptions::add_params_to(CLI::App& app) {

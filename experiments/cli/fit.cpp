@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 
 #include "experiments/cli/command.h"
@@ -47,31 +48,47 @@ Image framed(const Image& image, int frame) {
   return result;
 }
 
-/// STEM.json, and STEM.texton and STEM.exr, or STEM_1.texton … where impacts choose among several kernels.
+/// Coefficients of one gray or color map in the text format.
+TextonFile text_of(const Image& kernel, std::span<const double> mean, int order, const std::string& source) {
+  TextonFile texton{.order = order, .coefficients = framed(as_color(kernel), (order + 1) / 2), .source = source};
+  for (std::size_t c = 0; c < 3; ++c) texton.mean.at(c) = mean[mean.size() == 1 ? 0 : c];
+  return texton;
+}
+
+/// STEM.json, and STEM.texton and STEM.exr, or STEM_1.texton … where impacts choose among several kernels. A stack has
+/// one .texton a map, STEM_MAP.texton: with the same impacts they give maps that belong together.
 std::vector<std::filesystem::path> write_model(const ModelFile& model, const std::filesystem::path& stem,
                                                const std::string& source) {
   std::vector<std::filesystem::path> files{with_suffix(stem, ".json")};
   write_model_file(model, files.front());
   const std::vector<Image>& kernels = model.texton.kernels;
-  const std::vector<double>& mean = model.texton.mean;
   // An impact adds sqrt(K) h_k. The other formats have no place for the factor, so they hold kernels as they are
   // summed.
   const auto scale = static_cast<float>(std::sqrt(static_cast<double>(kernels.size())));
+  const int order = model.order.value_or(0);
   for (std::size_t k = 0; k < kernels.size(); ++k) {
     const std::string number = kernels.size() == 1 ? "" : fmt::format("_{}", k + 1);
-    Image color = as_color(kernels[k]);
-    for (int c = 0; c < 3; ++c) {
-      for (int y = 0; y < color.height(); ++y) {
-        for (float& v : color.row(c, y)) v *= scale;
+    Image kernel = kernels[k];
+    for (int c = 0; c < kernel.channels(); ++c) {
+      for (int y = 0; y < kernel.height(); ++y) {
+        for (float& v : kernel.row(c, y)) v *= scale;
       }
     }
     files.push_back(with_suffix(stem, number + ".exr"));
-    write_image(color, files.back());
-    const int order = model.order.value_or(0);
-    TextonFile texton{.order = order, .coefficients = framed(color, (order + 1) / 2), .source = source};
-    for (std::size_t c = 0; c < 3; ++c) texton.mean.at(c) = mean[mean.size() == 1 ? 0 : c];
-    files.push_back(with_suffix(stem, number + ".texton"));
-    write_texton_file(texton, files.back());
+    write_image(model.maps.empty() ? as_color(kernel) : kernel, files.back(), model.maps);
+    if (model.maps.empty()) {
+      files.push_back(with_suffix(stem, number + ".texton"));
+      write_texton_file(text_of(kernel, model.texton.mean, order, source), files.back());
+      continue;
+    }
+    const std::vector<Image> pictures = split_maps(kernel, model.maps);
+    std::span<const double> mean = model.texton.mean;
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+      files.push_back(with_suffix(stem, fmt::format("{}_{}.texton", number, model.maps[i].name)));
+      const auto channels = static_cast<std::size_t>(model.maps[i].channels);
+      write_texton_file(text_of(pictures[i], mean.first(channels), order, source), files.back());
+      mean = mean.subspan(channels);
+    }
   }
   return files;
 }
@@ -129,7 +146,8 @@ int fit(const FitOptions& options, const GlobalOptions& globals) {
                    .seed = asked.seed,
                    .texton = *texton,
                    .order = spline != nullptr ? std::optional(spline->order) : std::nullopt,
-                   .support_area = spline != nullptr ? spline->support_area : 0},
+                   .support_area = spline != nullptr ? spline->support_area : 0,
+                   .maps = exemplar.maps},
                   options.output, fmt::format("{} {}x{}", exemplar.name, size.width, size.height));
   if (!options.history.empty()) write_history(*convergence, options.history);
 
@@ -168,7 +186,7 @@ Command fit_command(CLI::App& app, const GlobalOptions& globals) {
   fit_app
       ->add_option("-o,--output", options->output,
                    "Files to write, without extension: .json (read by synth --model), and each kernel as .texton (the "
-                   "text format of the authors of Texton Noise) and .exr")
+                   "text format of the authors of Texton Noise, of a stack one a map) and .exr")
       ->required();
   fit_app->add_option("--history", options->history,
                       "CSV file for the relative model error (RME) after each iteration of sot or evaluation of "
@@ -177,6 +195,7 @@ Command fit_command(CLI::App& app, const GlobalOptions& globals) {
   set_examples(*fit_app,
                "  textonbench fit sot mamurk_e_1 -p support=31 -o texton\n"
                "  textonbench fit sot mamurk_e_1 -p iterations=1000 -p tolerance=1e-4 --history history.csv -o texton\n"
+               "  textonbench fit texton_noise albedo.png+height.png -o material\n"
                "  textonbench synth --model texton.json --size 1024x1024 -o sample.png");
   return {fit_app, [options, &globals] { return fit(*options, globals); }};
 }

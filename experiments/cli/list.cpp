@@ -91,7 +91,7 @@ void list_metrics(bool json) {
   print_table({{"METRIC"}, {"LEVEL"}, {"UNIT"}, {"BETTER"}, {"WHAT"}}, rows);
 }
 
-/// Size and channels of an exemplar that is here. A procedural one has no file to ask.
+/// Size and channels of an exemplar that is here. A procedural one and a stack have no file to ask.
 ImageInfo image_info(const ExemplarInfo& info) {
   if (!info.file.empty()) return read_image_info(info.file);
   const Image pixels = load_exemplar(info).pixels;

@@ -1,11 +1,15 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "experiments/cli/command.h"
 #include "experiments/execute.h"
@@ -31,6 +35,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Fitted {
   std::unique_ptr<Model> model;
+  std::vector<ImageMap> maps;  ///< of a stack
   Domain domain;
   double seconds = 0;
 };
@@ -54,7 +59,7 @@ Fitted fit_to_exemplar(const ModelOptions& asked, bool quiet) {
   }
   const Clock::time_point start = Clock::now();
   std::unique_ptr<Model> model = method.analyze(problem, params, analysis_seed(asked.seed));
-  return {std::move(model), domain, std::chrono::duration<double>(Clock::now() - start).count()};
+  return {std::move(model), exemplar.maps, domain, std::chrono::duration<double>(Clock::now() - start).count()};
 }
 
 /// The parameters of the noise: given on the command line, or else those that the file was fitted with, or else
@@ -86,13 +91,14 @@ Fitted read_fitted(const SynthOptions& options) {
   std::unique_ptr<Model> model =
       file.order ? make_spline_noise(file.spline_texton(), spline_noise_options(params))
                  : make_spot_noise(file.texton, spot_noise_options(params, file.texton.support_pixels));
-  return {std::move(model), domain, std::chrono::duration<double>(Clock::now() - start).count()};
+  return {std::move(model), file.maps, domain, std::chrono::duration<double>(Clock::now() - start).count()};
 }
 
 /// Windows above this are drawn and written band by band, so that the memory they take does not grow with their height.
 constexpr std::int64_t most_pixels_at_once = std::int64_t{1} << 24;
 
-void draw_bands(const Model& model, const Domain& domain, Seed seed, const std::filesystem::path& output, bool quiet) {
+void draw_bands(const Fitted& fitted, Seed seed, const std::filesystem::path& output, bool quiet) {
+  const Domain& domain = fitted.domain;
   std::optional<TiledImageWriter> writer;
   Domain window = domain;
   const int bands = (domain.size.height + TiledImageWriter::tile - 1) / TiledImageWriter::tile;
@@ -101,12 +107,29 @@ void draw_bands(const Model& model, const Domain& domain, Seed seed, const std::
     const int top = band * TiledImageWriter::tile;
     window.origin.y = domain.origin.y + top * domain.step;
     window.size.height = std::min(TiledImageWriter::tile, domain.size.height - top);
-    const Image image = model.synthesize(window, seed);
-    if (!writer) writer.emplace(output, domain.size, image.channels());
+    const Image image = fitted.model->synthesize(window, seed);
+    if (!writer) writer.emplace(output, domain.size, image.channels(), fitted.maps);
     writer->write_band(image);
     progress.advance("");
   }
   writer->finish();
+}
+
+/// One file, or of a stack that is not written as EXR one file a map: STEM_MAP.png.
+std::vector<std::filesystem::path> write_sample(const Image& sample, std::span<const ImageMap> maps,
+                                                const std::filesystem::path& output) {
+  if (maps.empty() || output.extension() == ".exr") {
+    write_image(sample, output, maps);
+    return {output};
+  }
+  const std::vector<Image> pictures = split_maps(sample, maps);
+  std::vector<std::filesystem::path> files;
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const std::string name = fmt::format("{}_{}{}", output.stem().string(), maps[i].name, output.extension().string());
+    files.push_back(output.parent_path() / name);
+    write_image(pictures[i], files.back());
+  }
+  return files;
 }
 
 int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
@@ -116,32 +139,37 @@ int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
   if (from_file != asked.method.empty() || from_file != asked.exemplar.empty()) {
     throw std::invalid_argument("synth: expected either METHOD EXEMPLAR or --model FILE");
   }
-  const auto [model, domain, analyze_seconds] =
-      from_file ? read_fitted(options) : fit_to_exemplar(asked, globals.quiet);
+  const Fitted fitted = from_file ? read_fitted(options) : fit_to_exemplar(asked, globals.quiet);
+  const Domain& domain = fitted.domain;
+  std::vector<std::filesystem::path> files{options.output};
   const Clock::time_point start = Clock::now();
   const Seed seed = sample_seed(asked.seed, 0);
   double synthesize_seconds = 0;
   if (domain.size.area() > most_pixels_at_once && !domain.periodic && options.output.extension() == ".exr") {
-    draw_bands(*model, domain, seed, options.output, globals.quiet);
+    draw_bands(fitted, seed, options.output, globals.quiet);
     synthesize_seconds = std::chrono::duration<double>(Clock::now() - start).count();
   } else {
-    const Image sample = model->synthesize(domain, seed);
+    const Image sample = fitted.model->synthesize(domain, seed);
     synthesize_seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    write_image(sample, options.output);
+    files = write_sample(sample, fitted.maps, options.output);
   }
 
+  std::vector<std::string> names;
+  names.reserve(files.size());
+  for (const std::filesystem::path& file : files) names.push_back(file.string());
   if (options.json) {
     print_json({{"output", options.output.string()},
-                {"seconds", {{"analyze", analyze_seconds}, {"synthesize", synthesize_seconds}}},
+                {"files", names},
+                {"seconds", {{"analyze", fitted.seconds}, {"synthesize", synthesize_seconds}}},
                 {"seed", asked.seed},
                 {"size", {domain.size.width, domain.size.height}},
                 {"periodic", domain.periodic},
                 {"step", domain.step}});
     return 0;
   }
-  fmt::print("{}: {}x{} {}, seed {} (analysis {:.1f} ms, synthesis {:.1f} ms)\n", options.output.string(),
+  fmt::print("{}: {}x{} {}, seed {} (analysis {:.1f} ms, synthesis {:.1f} ms)\n", fmt::join(names, " "),
              domain.size.width, domain.size.height, domain.periodic ? "torus" : "window", asked.seed,
-             1e3 * analyze_seconds, 1e3 * synthesize_seconds);
+             1e3 * fitted.seconds, 1e3 * synthesize_seconds);
   if (!globals.quiet && !from_file) {
     fmt::print(stderr, "next: textonbench measure {} {} tells how good it is\n", asked.method, asked.exemplar);
   }
@@ -164,12 +192,14 @@ Command synth_command(CLI::App& app, const GlobalOptions& globals) {
       ->add_option(
           "-o,--output", options->output,
           "Picture to write: .png (8 bit, clamped) or .exr (float); .exr of a window above 4096x4096 is drawn and "
-          "written in tiles, in little memory")
+          "written in tiles, in little memory. Maps of a stack are the channels MAP.R, MAP.G, MAP.B or MAP.Y of one "
+          ".exr, or one .png each: OUTPUT_MAP.png")
       ->required();
   synth->add_flag("--json", options->json, "Print one JSON document");
   set_examples(*synth,
                "  textonbench synth rpn mamurk_a_1 --seed 3 -o rpn.png\n"
                "  textonbench synth adsn photo.jpg --size 1024x768 -o large.png\n"
+               "  textonbench synth texton_noise albedo.png+normal.png+height.png --size 1024x1024 -o material.exr\n"
                "  textonbench synth --model texton.json -p impacts=stratified -p mni=5 -o from_file.png");
   return {synth, [options, &globals] { return synthesize(*options, globals); }};
 }

@@ -27,14 +27,15 @@ class AutocovarianceError : public SampleMetric {
     const Extent torus = domain.periodic ? sample.extent()
                                          : Extent{good_fft_size(sample.width() + reach_.width),
                                                   good_fft_size(sample.height() + reach_.height)};
-    const Image sums = lagged_products(forward_fft(centered(sample, mean_, torus)));
+    const std::vector<Image> sums = lagged_products(forward_fft(centered(sample, mean_, torus)));
     const auto wrap = [](int v, int n) { return v < 0 ? v + n : v; };
     std::vector<float> result;
     result.reserve(wanted_.size());
     for_each_entry(sample.channels(), [&](int c, int d, int x, int y) {
       const bool stored = c <= d;
-      const float sum = stored ? sums.at(pair(c, d), wrap(x, torus.width), wrap(y, torus.height))
-                               : sums.at(pair(d, c), wrap(-x, torus.width), wrap(-y, torus.height));
+      const Image& of_pair = sums[static_cast<std::size_t>(std::max(c, d))];
+      const float sum = stored ? of_pair.at(c, wrap(x, torus.width), wrap(y, torus.height))
+                               : of_pair.at(d, wrap(-x, torus.width), wrap(-y, torus.height));
       const double products = domain.periodic ? static_cast<double>(torus.area())
                                               : static_cast<double>(sample.width() - std::abs(x)) *
                                                     static_cast<double>(sample.height() - std::abs(y));
@@ -68,26 +69,26 @@ class AutocovarianceError : public SampleMetric {
   /// How many lags an entry stands for: v and −v, but for v = 0.
   double weight(std::size_t entry) const { return entry < mean_.size() * mean_.size() ? 1 : 2; }
 
-  /// Place of the pair (c, d), c <= d, among the channels of lagged_products.
-  static int pair(int c, int d) { return d * (d + 1) / 2 + c; }
-
-  /// Σ_x u_c(x + v) u_d(x) on the torus for all pairs c <= d.
-  static Image lagged_products(const Spectrum& u) {
-    Spectrum products(u.raster(), pair(u.channels() - 1, u.channels() - 1) + 1);
+  /// Σ_x u_c(x + v) u_d(x) on the torus for all pairs c <= d: channel c of image d.
+  static std::vector<Image> lagged_products(const Spectrum& u) {
+    std::vector<Image> sums;
+    sums.reserve(static_cast<std::size_t>(u.channels()));
     for (int d = 0; d < u.channels(); ++d) {
+      Spectrum products(u.raster(), d + 1);
       for (int c = 0; c <= d; ++c) {
         for (int ky = 0; ky < u.rows(); ++ky) {
           const auto a = u.row(c, ky);
           const auto b = u.row(d, ky);
-          const auto out = products.row(pair(c, d), ky);
+          const auto out = products.row(c, ky);
           for (std::size_t kx = 0; kx < out.size(); ++kx) {
             const float ar = a[kx].real(), ai = a[kx].imag(), br = b[kx].real(), bi = b[kx].imag();
             out[kx] = {ar * br + ai * bi, ai * br - ar * bi};
           }
         }
       }
+      sums.push_back(inverse_fft(products));
     }
-    return inverse_fft(products);
+    return sums;
   }
 
   std::vector<double> mean_;

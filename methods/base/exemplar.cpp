@@ -15,9 +15,10 @@ void require_usable(const Exemplar& exemplar) {
     throw std::invalid_argument(
         fmt::format("exemplar \"{}\" is {}x{} pixels: expected at least 2x2", exemplar.name, u.width(), u.height()));
   }
-  if (u.channels() != 1 && u.channels() != 3) {
-    throw std::invalid_argument(
-        fmt::format("exemplar \"{}\" has {} channels: expected 1 or 3", exemplar.name, u.channels()));
+  if (const std::size_t named = channel_names(exemplar.maps).size();
+      named != 0 && named != static_cast<std::size_t>(u.channels())) {
+    throw std::invalid_argument(fmt::format("exemplar \"{}\" has {} channels, and maps of {}: expected as many",
+                                            exemplar.name, u.channels(), named));
   }
   if (const auto bad = find_non_finite(u)) {
     throw std::invalid_argument(fmt::format("exemplar \"{}\": sample {} at x {}, y {}, channel {} is not finite",

@@ -77,10 +77,11 @@ std::unique_ptr<OIIO::ImageInput> open(const std::filesystem::path& file) {
   return input;
 }
 
-/// Color channels of a file, apart from an alpha channel at `alpha` (−1 when there is none).
+/// Color channels of a file, apart from an alpha channel at `alpha` (−1 when there is none), or those of its maps.
 struct Channels {
   int color = 0;
   int alpha = -1;
+  std::vector<ImageMap> maps = {};
 };
 
 Channels classify(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
@@ -89,13 +90,20 @@ Channels classify(const std::filesystem::path& file, const OIIO::ImageSpec& spec
       std::ranges::find(spec.channelnames, "K") != spec.channelnames.end()) {
     reject(file, "is a CMYK picture; convert it to RGB first");
   }
+  if (std::vector<ImageMap> maps = maps_of_channels(spec.channelnames); !maps.empty()) {
+    if (spec.nchannels > Image::max_channels) {
+      reject(file, fmt::format("has {} channels in {} maps; expected at most {}", spec.nchannels, maps.size(),
+                               Image::max_channels));
+    }
+    return {spec.nchannels, -1, std::move(maps)};
+  }
   const int alpha = spec.alpha_channel;
   const int color = spec.nchannels - (alpha >= 0 ? 1 : 0);
   if (color != 1 && color != 3) {
-    reject(file, fmt::format("has {} channels ({}); expected gray or RGB, with or without alpha", spec.nchannels,
-                             fmt::join(spec.channelnames, ", ")));
+    reject(file, fmt::format("has {} channels ({}); expected gray or RGB, with or without alpha, or maps of those",
+                             spec.nchannels, fmt::join(spec.channelnames, ", ")));
   }
-  return {color, alpha};
+  return {color, alpha, {}};
 }
 
 /// Highest level v of 8 and 16 bit samples, 0 for others. OpenImageIO multiplies levels by 1/v in float32, which misses
@@ -115,7 +123,7 @@ ImageInfo read_image_info(const std::filesystem::path& file) {
 ReadResult read_image(const std::filesystem::path& file) {
   const auto input = open(file);
   const OIIO::ImageSpec& spec = input->spec();
-  const auto [color, alpha] = classify(file, spec);
+  const auto [color, alpha, maps] = classify(file, spec);
   const auto width = static_cast<std::size_t>(spec.width);
   const auto height = static_cast<std::size_t>(spec.height);
   const auto channels = static_cast<std::size_t>(spec.nchannels);
@@ -125,7 +133,7 @@ ReadResult read_image(const std::filesystem::path& file) {
     reject(file, fmt::format("is truncated or damaged ({})", one_line(input->geterror())));
   }
   const float levels = highest_level(spec.format);
-  ReadResult result{Image({spec.width, spec.height}, color), {}};
+  ReadResult result{Image({spec.width, spec.height}, color), {}, maps};
   int target = 0;
   for (std::size_t c = 0; c < channels; ++c) {
     if (static_cast<int>(c) == alpha) {
@@ -171,8 +179,11 @@ OIIO::ImageBuf to_buffer(const Image& image) {
 }
 
 /// The bytes of a PNG or EXR file.
-std::vector<unsigned char> encode(const Image& image, const std::string& extension) {
+std::vector<unsigned char> encode(const Image& image, const std::string& extension, std::span<const ImageMap> maps) {
   OIIO::ImageBuf buffer = to_buffer(image);
+  if (!maps.empty()) {
+    buffer.specmod().channelnames = channel_names(maps);
+  }
   OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT;
   if (extension == ".png") {
     type = OIIO::TypeDesc::UINT8;
@@ -204,17 +215,22 @@ void from_buffer(const OIIO::ImageBuf& buffer, Image& image) {
 
 }  // namespace
 
-void write_image(const Image& image, const std::filesystem::path& file) {
+void write_image(const Image& image, const std::filesystem::path& file, std::span<const ImageMap> maps) {
   const std::string extension = extension_of(file);
   if (extension != ".png" && extension != ".exr") {
     reject(file, fmt::format("cannot write \"{}\" files; expected .png or .exr", extension));
   }
-  if (image.channels() != 1 && image.channels() != 3) {
+  if (maps.empty() && image.channels() != 1 && image.channels() != 3) {
     reject(file, fmt::format("cannot write a picture of {} channels; expected 1 or 3", image.channels()));
+  }
+  if (!maps.empty() &&
+      (extension != ".exr" || channel_names(maps).size() != static_cast<std::size_t>(image.channels()))) {
+    reject(file, fmt::format("cannot write {} channels as maps of {}; expected as many, and .exr", image.channels(),
+                             channel_names(maps).size()));
   }
   // Encoded in memory, because OpenImageIO does not tell when the disk is full; written beside under a name of this
   // process, so that a reader never sees half a picture.
-  const std::vector<unsigned char> bytes = encode(image, extension);
+  const std::vector<unsigned char> bytes = encode(image, extension, maps);
   const std::filesystem::path beside =
       file.parent_path() / fmt::format(".{}.{}{}", file.stem().string(), getpid(), extension);
   std::ofstream stream(beside, std::ios::binary);

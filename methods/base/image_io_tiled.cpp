@@ -9,7 +9,9 @@
 #include <cerrno>
 #include <fstream>
 #include <stdexcept>
+#include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace textonbench {
@@ -74,19 +76,28 @@ struct TiledImageWriter::Output {
   std::vector<float> samples;
 };
 
-TiledImageWriter::TiledImageWriter(const std::filesystem::path& file, Extent extent, int channels)
+TiledImageWriter::TiledImageWriter(const std::filesystem::path& file, Extent extent, int channels,
+                                   std::span<const ImageMap> maps)
     : file_(file), extent_(extent), channels_(channels) {
   if (file.extension() != ".exr") {
     throw std::invalid_argument(fmt::format("{}: a picture of {}x{} is written in tiles; expected an .exr file",
                                             file.string(), extent.width, extent.height));
   }
-  if (channels != 1 && channels != 3) {
+  std::vector<std::string> names = channel_names(maps);
+  if (names.empty() && channels != 1 && channels != 3) {
     throw std::invalid_argument(fmt::format("{}: a picture of {} channels; expected 1 or 3", file.string(), channels));
+  }
+  if (!names.empty() && names.size() != static_cast<std::size_t>(channels)) {
+    throw std::invalid_argument(
+        fmt::format("{}: {} channels and maps of {}; expected as many", file.string(), channels, names.size()));
   }
   output_ = std::make_unique<Output>(name_beside(file));
   output_->require(true, file);
   output_->writer = OIIO::ImageOutput::create("picture.exr");
   OIIO::ImageSpec spec(extent.width, extent.height, channels, OIIO::TypeDesc::FLOAT);
+  if (!names.empty()) {
+    spec.channelnames = std::move(names);
+  }
   spec.tile_width = tile;
   spec.tile_height = tile;
   spec.attribute("compression", "none");

@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 
 #include "methods/base/image.h"
+#include "methods/base/image_maps.h"
 
 namespace textonbench {
 
@@ -14,9 +16,9 @@ class TiledImageWriter {
  public:
   static constexpr int tile = 256;  ///< side in pixels; also the height of a band
 
-  /// Throws std::invalid_argument for another extension than .exr or other than 1 or 3 channels, std::runtime_error
-  /// when the file cannot be made.
-  TiledImageWriter(const std::filesystem::path& file, Extent extent, int channels);
+  /// 1 or 3 channels, or those of `maps`, named as by write_image. Throws std::invalid_argument for another extension
+  /// than .exr or number of channels, std::runtime_error when the file cannot be made.
+  TiledImageWriter(const std::filesystem::path& file, Extent extent, int channels, std::span<const ImageMap> maps = {});
   TiledImageWriter(const TiledImageWriter&) = delete;
   TiledImageWriter& operator=(const TiledImageWriter&) = delete;
   /// Removes the unfinished file, if finish() was not reached.

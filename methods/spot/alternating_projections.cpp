@@ -19,24 +19,27 @@ namespace {
 
 constexpr int width = BinBlock::width;
 using ColumnSums = std::array<double, width>;
+template <class Number>
+using ChannelPointers = std::array<Number*, Image::max_channels>;
 
 /// Replaces the bins F of a block of columns by T s, and adds Σ_ky weights[ky] |F − T s|² to the sum of each column.
-/// With the square of no difference of large numbers the sums are accurate however close the two are.
-template <std::size_t channels>
-inline __attribute__((always_inline)) void project_bins(const std::array<const float*, channels>& spot,
+/// With the square of no difference of large numbers the sums are accurate however close the two are. Inlined, so that
+/// loops over a constant number of channels unroll.
+inline __attribute__((always_inline)) void project_bins(int channels, const ChannelPointers<const float>& spot,
                                                         const std::vector<float>& weights,
-                                                        const std::array<float*, channels>& texton, ColumnSums& sums) {
+                                                        const ChannelPointers<float>& texton, ColumnSums& sums) {
   const int rows = static_cast<int>(weights.size());
   constexpr float smallest = 1e-36F;  // squares below are not normal numbers
   for (int ky = 0; ky < rows; ++ky) {
     const std::ptrdiff_t k = std::ptrdiff_t{ky} * 2 * width;
-    FloatLanes t_re[channels];
-    FloatLanes t_im[channels];
-    FloatLanes f_re[channels];
-    FloatLanes f_im[channels];
+    FloatLanes t_re[Image::max_channels];
+    FloatLanes t_im[Image::max_channels];
+    FloatLanes f_re[Image::max_channels];
+    FloatLanes f_im[Image::max_channels];
     FloatLanes re{};
     FloatLanes im{};
-    for (std::size_t c = 0; c < channels; ++c) {
+    for (int i = 0; i < channels; ++i) {
+      const auto c = static_cast<std::size_t>(i);
       load(spot[c] + k, t_re[c]);
       load(spot[c] + k + width, t_im[c]);
       load(texton[c] + k, f_re[c]);
@@ -52,7 +55,8 @@ inline __attribute__((always_inline)) void project_bins(const std::array<const f
     const FloatLanes phase_re = norm < smallest ? FloatLanes{} + 1.0F : re / root;
     const FloatLanes phase_im = norm < smallest ? FloatLanes{} : im / root;
     FloatLanes distance{};
-    for (std::size_t c = 0; c < channels; ++c) {
+    for (int i = 0; i < channels; ++i) {
+      const auto c = static_cast<std::size_t>(i);
       const FloatLanes new_re = t_re[c] * phase_re - t_im[c] * phase_im;
       const FloatLanes new_im = t_re[c] * phase_im + t_im[c] * phase_re;
       const FloatLanes off_re = f_re[c] - new_re;
@@ -68,17 +72,23 @@ inline __attribute__((always_inline)) void project_bins(const std::array<const f
   }
 }
 
-__attribute__((target_clones("default", "avx2", "avx512f"))) void project_gray(const float* spot,
+__attribute__((target_clones("default", "avx2", "avx512f"))) void project_gray(const ChannelPointers<const float>& spot,
                                                                                const std::vector<float>& weights,
-                                                                               float* texton, ColumnSums& sums) {
-  project_bins<1>({spot}, weights, {texton}, sums);
+                                                                               const ChannelPointers<float>& texton,
+                                                                               ColumnSums& sums) {
+  project_bins(1, spot, weights, texton, sums);
 }
 
-__attribute__((target_clones("default", "avx2", "avx512f"))) void project_color(const std::array<const float*, 3>& spot,
-                                                                                const std::vector<float>& weights,
-                                                                                const std::array<float*, 3>& texton,
-                                                                                ColumnSums& sums) {
-  project_bins<3>(spot, weights, texton, sums);
+__attribute__((target_clones("default", "avx2", "avx512f"))) void project_color(
+    const ChannelPointers<const float>& spot, const std::vector<float>& weights, const ChannelPointers<float>& texton,
+    ColumnSums& sums) {
+  project_bins(3, spot, weights, texton, sums);
+}
+
+__attribute__((target_clones("default", "avx2", "avx512f"))) void project_stack(
+    int channels, const ChannelPointers<const float>& spot, const std::vector<float>& weights,
+    const ChannelPointers<float>& texton, ColumnSums& sums) {
+  project_bins(channels, spot, weights, texton, sums);
 }
 
 /// The projection of spectra onto those of modulus T = T_u / b̂^{1/2}, block of columns by block.
@@ -112,13 +122,20 @@ class Projection {
       block.bins(c)[0] = block.bins(c)[width] = 0;  // the error leaves ξ = 0 out
     }
     const auto number = static_cast<std::size_t>(first / width);
-    const auto in = [&](int c) { return static_cast<const float*>(blocks_[number].bins(c)); };
-    const auto out = [&](int c) { return block.bins(c); };
+    ChannelPointers<const float> in{};
+    ChannelPointers<float> out{};
+    for (int i = 0; i < layout_.channels(); ++i) {
+      const auto c = static_cast<std::size_t>(i);
+      in[c] = blocks_[number].bins(i);
+      out[c] = block.bins(i);
+    }
     ColumnSums sums{};
     if (layout_.channels() == 1) {
-      project_gray(in(0), row_weights_, out(0), sums);
+      project_gray(in, row_weights_, out, sums);
+    } else if (layout_.channels() == 3) {
+      project_color(in, row_weights_, out, sums);
     } else {
-      project_color({in(0), in(1), in(2)}, row_weights_, {out(0), out(1), out(2)}, sums);
+      project_stack(layout_.channels(), in, row_weights_, out, sums);
     }
     sums_[number] = sums;
   }
@@ -183,7 +200,6 @@ void require_projectable(const GaussianModel& model, const Support& support, con
   };
   require(model.spectrum.factors.size() == 1,
           fmt::format("a model of {} factors, expected 1", model.spectrum.factors.size()));
-  require(spot.channels() == 1 || spot.channels() == 3, fmt::format("{} channels, expected 1 or 3", spot.channels()));
   require(
       start.raster() == spot.raster() && start.channels() == spot.channels(),
       fmt::format("a start of {}x{}x{}, expected the exemplar's {}x{}x{}", start.raster().width, start.raster().height,

@@ -45,7 +45,7 @@ struct ProjectedTexton {
 /// keeps the phases of T* start. S lies at the corner (0, 0) of the torus. The spectrum that an iteration computes
 /// gives the RME of the iteration before; only the last one costs a transform of its own. The same start gives the same
 /// bits, whatever the number of threads; rounding errors grow to 2e-4 of the largest coefficient in 50 iterations.
-/// Throws std::invalid_argument unless the model has one factor of 1 or 3 channels, the start has its size, S fits into
+/// Throws std::invalid_argument unless the model has one factor, the start has its size, S fits into
 /// it, iterations >= 1, 0 <= tolerance < 1 and the order exists.
 ProjectedTexton alternate_projections(const GaussianModel& model, const Support& support, const Spectrum& start,
                                       const ProjectionOptions& options);

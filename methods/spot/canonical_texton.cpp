@@ -15,9 +15,9 @@ std::optional<std::string> refuse_color(const Exemplar& exemplar) {
   if (exemplar.pixels.channels() == 1) {
     return std::nullopt;
   }
-  return fmt::format(
-      "canonical_texton is defined for gray exemplars: \"{}\" has {} channels; luminance_texton serves color",
-      exemplar.name, exemplar.pixels.channels());
+  return fmt::format("canonical_texton is defined for gray exemplars: \"{}\" has {} channels; {}", exemplar.name,
+                     exemplar.pixels.channels(),
+                     exemplar.pixels.channels() == 3 ? "luminance_texton serves color" : "sot serves stacks of maps");
 }
 
 std::span<const ParamSpec> canonical_texton_params() {

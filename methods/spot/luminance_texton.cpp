@@ -1,5 +1,9 @@
 #include "methods/spot/luminance_texton.h"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+
 #include "methods/spot/spot_noise.h"
 #include "methods/spot/zero_phase_texton.h"
 
@@ -11,6 +15,17 @@ ParamSpec weight_param(std::string_view name, double weight) {
           .default_value = weight,
           .unit = "",
           .help = "weight of the channel in the luminance whose phase is taken off"};
+}
+
+std::optional<std::string> refuse_stack(const Exemplar& exemplar) {
+  const int channels = exemplar.pixels.channels();
+  if (channels == 1 || channels == 3) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "luminance_texton is defined for gray and color exemplars, by their luminance: \"{}\" has {} channels; sot "
+      "serves stacks of maps",
+      exemplar.name, channels);
 }
 
 std::span<const ParamSpec> luminance_texton_params() {
@@ -32,6 +47,9 @@ std::span<const ParamSpec> luminance_texton_params() {
 
 Texton luminance_texton(const Exemplar& exemplar, SpotSource component, const LuminanceWeights& weights,
                         const Support& support) {
+  if (const auto reason = refuse_stack(exemplar)) {
+    throw std::invalid_argument(*reason);
+  }
   const GaussianModel model = fit_spot(exemplar, component);
   return exemplar.pixels.channels() == 1
              ? zero_phase_texton(model, std::array{1.0}, support)
@@ -45,7 +63,9 @@ MethodEntry luminance_texton_entry() {
           .params = luminance_texton_params(),
           .refuses =
               [](const Problem& problem, const Params& params, const Domain& domain) {
-                return refuse_spot_noise(support_of(params, problem.exemplar.pixels.extent()).box, domain);
+                const auto stack = refuse_stack(problem.exemplar);
+                return stack ? stack
+                             : refuse_spot_noise(support_of(params, problem.exemplar.pixels.extent()).box, domain);
               },
           .analyze =
               [](const Problem& problem, const Params& params, Seed) {

@@ -23,9 +23,13 @@ void expect_refused(const Exemplar& exemplar, const std::string& reason) {
               testing::ThrowsMessage<std::invalid_argument>(AllOf(HasSubstr("\"bark\""), HasSubstr(reason))));
 }
 
-TEST(RequireUsable, AcceptsGrayAndColorThatVaryAnywhere) {
+TEST(RequireUsable, AcceptsGrayColorAndStacksThatVaryAnywhere) {
   EXPECT_NO_THROW(require_usable(varied({2, 2}, 1)));
   EXPECT_NO_THROW(require_usable(varied({17, 3}, 3)));  // only the last sample of the last channel differs
+  Exemplar stack = varied({9, 4}, 7);
+  EXPECT_NO_THROW(require_usable(stack));
+  stack.maps = {{"albedo", 3}, {"normal", 3}, {"height", 1}};
+  EXPECT_NO_THROW(require_usable(stack));
 }
 
 TEST(RequireUsable, RefusesWhatNoModelCanBeFittedTo) {
@@ -33,8 +37,9 @@ TEST(RequireUsable, RefusesWhatNoModelCanBeFittedTo) {
   expect_refused(varied({1, 1}, 3), "is 1x1 pixels: expected at least 2x2");
   expect_refused(varied({1, 40}, 3), "is 1x40 pixels: expected at least 2x2");
   expect_refused(varied({40, 1}, 1), "is 40x1 pixels: expected at least 2x2");
-  expect_refused(varied({8, 8}, 2), "has 2 channels: expected 1 or 3");
-  expect_refused(varied({8, 8}, 4), "has 4 channels: expected 1 or 3");
+  Exemplar stack = varied({8, 8}, 5);
+  stack.maps = {{"albedo", 3}, {"height", 1}};
+  expect_refused(stack, "has 5 channels, and maps of 4: expected as many");
 }
 
 TEST(RequireUsable, TellsPlaceAndValueOfANonFiniteSample) {

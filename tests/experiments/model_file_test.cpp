@@ -42,6 +42,16 @@ ModelFile example() {
   return model;
 }
 
+/// Eight channels in three maps.
+ModelFile stack_example() {
+  ModelFile model = example();
+  model.maps = {{"albedo", 3}, {"normal", 3}, {"height", 1}, {"gloss", 1}};
+  model.texton = {.kernels = {}, .support_pixels = 6, .mean = std::vector<double>(8, 0.25)};
+  Image& kernel = model.texton.kernels.emplace_back(Extent{3, 2}, 8);
+  for (int c = 0; c < 8; ++c) kernel.at(c, c % 3, c % 2) = 0.1F * static_cast<float>(c + 1);
+  return model;
+}
+
 class ModelFileTest : public testing::Test {
  protected:
   std::filesystem::path file() const { return folder_.path() / "model.json"; }
@@ -61,6 +71,28 @@ class ModelFileTest : public testing::Test {
   }
   TemporaryFolder folder_;
 };
+
+TEST_F(ModelFileTest, AStackKeepsItsMapsAndChannels) {
+  const ModelFile model = stack_example();
+  write_model_file(model, file());
+  const ModelFile read = read_model_file(file());
+  EXPECT_EQ(read.maps, model.maps);
+  ASSERT_EQ(read.texton.channels(), 8);
+  for (int c = 0; c < 8; ++c) {
+    EXPECT_EQ(read.texton.kernels[0].at(c, c % 3, c % 2), model.texton.kernels[0].at(c, c % 3, c % 2));
+  }
+  std::ifstream in(file());
+  const Json json = Json::parse(in);
+  Json one_missing = json;
+  one_missing["maps"].erase(3);
+  EXPECT_THAT(message_for(one_missing.dump()), HasSubstr("maps: expected maps of 8 channels in all"));
+  Json of_two = json;
+  of_two["maps"][0]["channels"] = 2;
+  EXPECT_THAT(message_for(of_two.dump()), HasSubstr("maps: expected named maps of 1 or 3 channels"));
+  Json nine = json;
+  nine["kernels"][0]["channels"] = 9;
+  EXPECT_THAT(message_for(nine.dump()), HasSubstr("channels: expected a whole number from 1 to 8"));
+}
 
 TEST_F(ModelFileTest, IsReadBackBitForBit) {
   const ModelFile model = example();

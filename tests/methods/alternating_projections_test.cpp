@@ -79,7 +79,7 @@ double difference(const Image& kernel, const Image& expected) {
 
 TEST(AlternatingProjections, AreThoseWithWholeTransforms) {
   for (const Extent extent : {Extent{48, 36}, Extent{35, 41}}) {
-    for (const int channels : {1, 3}) {
+    for (const int channels : {1, 2, 3, 5, 8}) {
       const GaussianModel model = model_of(test_texture(extent, channels));
       const Support disc = disc_support(6);
       for (const Spectrum& start :

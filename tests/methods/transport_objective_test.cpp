@@ -14,8 +14,11 @@ struct Case {
   int kernels;
 };
 
-constexpr Case cases[] = {
-    {{12, 9}, {5, 4}, 3, 2}, {{11, 10}, {4, 7}, 1, 3}, {{8, 8}, {8, 8}, 3, 1}, {{9, 13}, {3, 3}, 1, 1}};
+constexpr Case cases[] = {{{12, 9}, {5, 4}, 3, 2},
+                          {{11, 10}, {4, 7}, 1, 3},
+                          {{8, 8}, {8, 8}, 3, 1},
+                          {{9, 13}, {3, 3}, 1, 1},
+                          {{9, 8}, {4, 3}, 8, 2}};
 
 TEST(TransportObjective, ValueAndGradientAreThoseOfDirectSums) {
   for (const Case& one : cases) {
