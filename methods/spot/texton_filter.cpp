@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 namespace textonbench {
 namespace {
@@ -16,62 +17,57 @@ constexpr int most_probes = 16;
 /// q beyond which a Gaussian is cut, 3² standard deviations.
 constexpr double ellipse_cut = 9;
 
-int coarsest_level(Extent extent) {
-  int level = 0;
-  while ((1 << level) < std::max(extent.width, extent.height)) ++level;
-  return level;
-}
-
 }  // namespace
 
-MipChain::MipChain(const Image& coefficients) : extent_(coefficients.extent()) {
+MipChain::Level::Level(Extent size)
+    : extent(size), texels(stride() * (static_cast<std::size_t>(size.height) + 2), Texel::Zero()) {}
+
+MipChain::MipChain(const Image& coefficients) {
   if (coefficients.channels() > Texel::SizeAtCompileTime) {
     throw std::invalid_argument(fmt::format("mip chain of {} channels: expected at most {}", coefficients.channels(),
                                             +Texel::SizeAtCompileTime));
   }
-  const int frame = 1 << coarsest_level(extent_);
-  const auto level_size = [](int side) { return static_cast<std::size_t>(side) * static_cast<std::size_t>(side); };
-  levels_.resize(static_cast<std::size_t>(coarsest_level(extent_)) + 1);
-  levels_[0].assign(level_size(3 * frame), Texel::Zero());
-  for (int y = 0; y < extent_.height; ++y) {
-    for (int x = 0; x < extent_.width; ++x) {
-      for (int c = 0; c < coefficients.channels(); ++c) {
-        levels_[0][static_cast<std::size_t>((y + frame) * side(0) + x + frame)][c] = coefficients.at(c, x, y);
-      }
+  levels_.emplace_back(coefficients.extent());
+  for (int y = 0; y < coefficients.height(); ++y) {
+    for (int x = 0; x < coefficients.width(); ++x) {
+      Texel value = Texel::Zero();
+      for (int c = 0; c < coefficients.channels(); ++c) value[c] = coefficients.at(c, x, y);
+      levels_[0].set(x, y, value);
     }
   }
-  for (int level = 1; level <= coarsest(); ++level) {
-    std::vector<Texel>& averages = levels_[static_cast<std::size_t>(level)];
-    averages.reserve(level_size(side(level)));
-    for (int y = 0; y < side(level); ++y) {
-      for (int x = 0; x < side(level); ++x) {
-        averages.emplace_back(0.25F * (texel(level - 1, 2 * x, 2 * y) + texel(level - 1, 2 * x + 1, 2 * y) +
-                                       texel(level - 1, 2 * x, 2 * y + 1) + texel(level - 1, 2 * x + 1, 2 * y + 1)));
+  while (levels_.back().extent != Extent{1, 1}) {
+    const Level& fine = levels_.back();
+    Level coarse({(fine.extent.width + 1) / 2, (fine.extent.height + 1) / 2});
+    for (int y = 0; y < coarse.extent.height; ++y) {
+      for (int x = 0; x < coarse.extent.width; ++x) {
+        coarse.set(x, y,
+                   0.25F * (fine.at(2 * x, 2 * y) + fine.at(2 * x + 1, 2 * y) + fine.at(2 * x, 2 * y + 1) +
+                            fine.at(2 * x + 1, 2 * y + 1)));
       }
     }
+    levels_.push_back(std::move(coarse));
   }
 }
 
 Texel MipChain::coefficient(int x, int y) const {
-  const int frame = 1 << coarsest();
-  return x >= 0 && x < extent_.width && y >= 0 && y < extent_.height ? texel(0, x + frame, y + frame) : Texel::Zero();
+  const auto [width, height] = extent(0);
+  return x >= 0 && x < width && y >= 0 && y < height ? texel(0, x, y) : Texel::Zero();
 }
 
 Texel MipChain::bilinear(int level, double x, double y) const {
-  const double frame = 1 << coarsest();
   const double texels = 1.0 / (1 << level);
-  const double u = (x + frame + 0.5) * texels - 0.5;
-  const double v = (y + frame + 0.5) * texels - 0.5;
-  const double last = side(level) - 1;
-  if (!(u >= 0 && u < last && v >= 0 && v < last)) {
-    return Texel::Zero();  // the outermost texels are zero
+  const double u = (x + 0.5) * texels + 0.5;  // from the frame's first texel
+  const double v = (y + 0.5) * texels + 0.5;
+  const Extent size = extent(level);
+  if (!(u >= 0 && u < size.width + 1 && v >= 0 && v < size.height + 1)) {
+    return Texel::Zero();
   }
   const int left = static_cast<int>(u);
   const int top = static_cast<int>(v);
   const auto right = static_cast<float>(u - left);
   const auto bottom = static_cast<float>(v - top);
-  const Texel* upper = &texel(level, left, top);
-  const Texel* lower = upper + side(level);
+  const Texel* upper = &texel(level, left - 1, top - 1);
+  const Texel* lower = &texel(level, left - 1, top);
   return (1 - bottom) * ((1 - right) * upper[0] + right * upper[1]) +
          bottom * ((1 - right) * lower[0] + right * lower[1]);
 }
@@ -85,7 +81,7 @@ Texel MipChain::trilinear(double level, double x, double y) const {
 
 std::size_t MipChain::bytes() const {
   std::size_t texels = 0;
-  for (const std::vector<Texel>& level : levels_) texels += level.size();
+  for (const Level& level : levels_) texels += level.texels.size();
   return texels * sizeof(Texel);
 }
 

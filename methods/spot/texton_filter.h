@@ -19,9 +19,9 @@ using Texel = Eigen::Vector4f;
 /// asks for; by several such probes along that side; or by an elliptic Gaussian sum over the coefficients.
 enum class TextonFilter { none, trilinear, anisotropic, ewa };
 
-/// α and its averages over squares of 2^l coefficients, l = 0 … L, 2^L the first power of two that is no less than the
-/// longer side. A frame of 2^L zeros lies around α, cut to a square of 3 · 2^L, so every level keeps at least one texel
-/// of zeros on each side and a texel never mixes opposite borders.
+/// α (level 0) and its averages over squares of 2^l coefficients that start at multiples of 2^l from the first one, up
+/// to the level L of a single texel. Every level has a frame of one texel of zeros, which is what a frame of 2^L zeros
+/// around α becomes at level L: no texel mixes opposite borders, and none is cut.
 class MipChain {
  public:
   /// Throws std::invalid_argument for coefficients of more than 4 channels.
@@ -29,12 +29,10 @@ class MipChain {
 
   /// L.
   int coarsest() const { return static_cast<int>(levels_.size()) - 1; }
-  Extent extent() const { return extent_; }
-  /// Texels on a side of a level.
-  int side(int level) const { return 3 << (coarsest() - level); }
-  const Texel& texel(int level, int x, int y) const {
-    return levels_[static_cast<std::size_t>(level)][static_cast<std::size_t>(y * side(level) + x)];
-  }
+  /// Texels of a level, its frame left out.
+  Extent extent(int level) const { return levels_[static_cast<std::size_t>(level)].extent; }
+  /// x in [−1, width], y in [−1, height].
+  const Texel& texel(int level, int x, int y) const { return levels_[static_cast<std::size_t>(level)].at(x, y); }
   /// α(x, y), zero outside.
   Texel coefficient(int x, int y) const;
 
@@ -46,8 +44,20 @@ class MipChain {
   std::size_t bytes() const;
 
  private:
-  Extent extent_;
-  std::vector<std::vector<Texel>> levels_;
+  struct Level {
+    explicit Level(Extent size);
+    std::size_t stride() const { return static_cast<std::size_t>(extent.width) + 2; }
+    const Texel& at(int x, int y) const {
+      return texels[static_cast<std::size_t>(y + 1) * stride() + static_cast<std::size_t>(x + 1)];
+    }
+    void set(int x, int y, const Texel& value) {
+      texels[static_cast<std::size_t>(y + 1) * stride() + static_cast<std::size_t>(x + 1)] = value;
+    }
+
+    Extent extent;
+    std::vector<Texel> texels;
+  };
+  std::vector<Level> levels_;
 };
 
 /// A filter under one footprint. The columns of the footprint are what one pixel to the right and one pixel down are on

@@ -182,30 +182,30 @@ TEST(FilteredSum, VarianceBehindTheMipChainIsThatOfItsKernel) {
 
 /// Where the window is that of the unfiltered kernel the filtered one is cut: what it misses is lost to the variance,
 /// and to the mean, as the constant that is taken off is that of the whole kernel. Limits are far beyond 5 standard
-/// errors of the 4000 values.
+/// errors of the 2000 values.
 TEST(FilteredSum, AWindowThatTheFootprintDoesNotEnlargeBiasesMeanAndVariance) {
   const SplineTexton texton = texton_of({9, 7}, 1, 1);
   const FilteredSum noise = poisson_sum(texton);
   for (const TextonFilter filter : {TextonFilter::anisotropic, TextonFilter::ewa}) {
-    const Moments whole = filtered_moments(noise, 4000, 12, filter, ImpactWindow::footprint);
-    const Moments cut = filtered_moments(noise, 4000, 12, filter, ImpactWindow::kernel);
+    const Moments whole = filtered_moments(noise, 2000, 12, filter, ImpactWindow::footprint);
+    const Moments cut = filtered_moments(noise, 2000, 12, filter, ImpactWindow::kernel);
     EXPECT_LT(cut.variance, 0.9 * whole.variance);
-    EXPECT_LT(cut.mean, whole.mean - 10 * std::sqrt(whole.variance / 4000));
-    const Moments unfiltered = filtered_moments(noise, 4000, 1, TextonFilter::anisotropic, ImpactWindow::kernel);
-    EXPECT_NEAR(unfiltered.mean, texton.coefficients.mean[0], 5 * std::sqrt(unfiltered.variance / 4000));
+    EXPECT_LT(cut.mean, whole.mean - 10 * std::sqrt(whole.variance / 2000));
+    const Moments unfiltered = filtered_moments(noise, 2000, 1, TextonFilter::anisotropic, ImpactWindow::kernel);
+    EXPECT_NEAR(unfiltered.mean, texton.coefficients.mean[0], 5 * std::sqrt(unfiltered.variance / 2000));
   }
 }
 
 /// Filtered and supersampled values of the same impacts, for coefficients of white noise, which no filter spares. The
-/// distances, in standard deviations of the noise, are known to a few percent from 1000 values.
+/// distances, in standard deviations of the noise, are known to some 5 % from 400 values.
 TEST(FilteredSum, FiltersApproximateTheMeanOverThePixel) {
   const SplineTexton texton = texton_of({12, 12}, 1, 1);
   const FilteredSum noise = poisson_sum(texton);
   const std::uint64_t key = spline_noise_key(Seed{4});
   const double deviation =
-      std::sqrt(filtered_moments(noise, 4000, 1, TextonFilter::none, ImpactWindow::footprint).variance);
+      std::sqrt(filtered_moments(noise, 2000, 1, TextonFilter::none, ImpactWindow::footprint).variance);
   const auto error = [&](TextonFilter filter, double size) {
-    const Moments distance = moments_of(1000, [&](const Vector2d& p, std::vector<PlaneImpact>& impacts) {
+    const Moments distance = moments_of(400, [&](const Vector2d& p, std::vector<PlaneImpact>& impacts) {
       return noise.evaluate(p, square(size), filter, ImpactWindow::footprint, key, impacts)[0] -
              supersample(noise, p, size, key, impacts);
     });
