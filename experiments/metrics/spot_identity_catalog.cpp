@@ -158,7 +158,7 @@ std::span<const MetricEntry> spot_identity_metrics() {
           .of_model = distant_window_ratio,
           .identity = true},
       MetricEntry{.name = "reference_error",
-                  .title = "Error against the reference",
+                  .title = "Reference error",
                   .unit = "sd",
                   .level = MetricLevel::model,
                   .better = Better::lower,
