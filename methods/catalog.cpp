@@ -9,6 +9,7 @@
 #include "methods/spectral/rpn.h"
 #include "methods/spot/canonical_texton.h"
 #include "methods/spot/dsn.h"
+#include "methods/spot/filtered_noise.h"
 #include "methods/spot/luminance_texton.h"
 #include "methods/spot/mixing.h"
 #include "methods/spot/optimal_texton.h"
@@ -20,8 +21,9 @@ namespace textonbench {
 
 std::span<const MethodEntry> method_catalog() {
   static const std::vector<MethodEntry> entries = {
-      rpn_entry(), adsn_entry(),           dsn_entry(),          canonical_texton_entry(), luminance_texton_entry(),
-      sot_entry(), optimal_texton_entry(), texton_noise_entry(), surface_noise_entry(),    mixing_entry()};
+      rpn_entry(),   adsn_entry(),           dsn_entry(),          canonical_texton_entry(), luminance_texton_entry(),
+      sot_entry(),   optimal_texton_entry(), texton_noise_entry(), surface_noise_entry(),    filtered_noise_entry(),
+      mixing_entry()};
   return entries;
 }
 

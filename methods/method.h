@@ -93,6 +93,8 @@ class Model {
   virtual const Texton* texton() const { return nullptr; }
   /// The coefficients that the model sums as B-splines, when it is a noise of the plane.
   virtual const SplineTexton* spline_texton() const { return nullptr; }
+  /// A slow model whose sample of a seed this one's sample of that seed approximates.
+  virtual std::unique_ptr<Model> reference() const { return nullptr; }
   /// Of a model that an iteration fitted.
   virtual const Convergence* convergence() const { return nullptr; }
   virtual Footprint footprint(const Domain& domain) const = 0;

@@ -4,6 +4,7 @@
 
 #include "experiments/metrics/canonical_concentration.h"
 #include "experiments/metrics/kurtosis_slope.h"
+#include "experiments/metrics/reference_error.h"
 #include "experiments/metrics/spot_identities.h"
 #include "experiments/metrics/torus_crop.h"
 #include "experiments/metrics/window_cost.h"
@@ -156,6 +157,15 @@ std::span<const MetricEntry> spot_identity_metrics() {
           .source = "window_cost",
           .of_model = distant_window_ratio,
           .identity = true},
+      MetricEntry{.name = "reference_error",
+                  .title = "Reference error",
+                  .unit = "sd",
+                  .level = MetricLevel::model,
+                  .better = Better::lower,
+                  .reference = "RMSE to supersampling of the same seed / standard deviation of the noise (CGF 2017, 5)",
+                  .source = "reference_error",
+                  .of_model = reference_error,
+                  .identity = true},
   };
   return entries;
 }

@@ -63,40 +63,12 @@ void require_spline_texton(const SplineTexton& texton) {
 /// for single points.
 double best_cell(double mni) { return std::clamp(std::cbrt(2 / mni), 0.05, 1.0); }
 
-ImpactGrid make_grid(const SplineTexton& texton, const SplineNoiseOptions& options) {
-  if (!(std::isfinite(options.mni) && options.mni > 0)) {
-    throw std::invalid_argument(fmt::format("mni = {}: expected a finite mean number of impacts above 0", options.mni));
-  }
-  if (!(options.cell == 0 || (options.cell >= 0.01 && options.cell <= 16))) {
-    throw std::invalid_argument(
-        fmt::format("cell = {}: expected 0.01 to 16 sides of the support, or 0 for the fastest", options.cell));
-  }
-  const double paper_cell = 0.6;
-  const double fallback = options.impacts == ImpactProcess::paper ? paper_cell : best_cell(options.mni);
-  const double cell = options.cell > 0 ? options.cell : fallback;
-  ImpactGrid grid(options.impacts, options.mni / texton.support_area, cell * std::sqrt(texton.support_area),
-                  static_cast<int>(texton.coefficients.kernels.size()));
-  if (options.kernel_at) {
-    if (grid.mean_weight() != 0) {
-      throw std::invalid_argument("kernels chosen by place: expected impacts of random sign");
-    }
-    const Extent box = texton.coefficients.extent();
-    grid.choose_kernels([kernel_at = options.kernel_at, box](std::int64_t x, std::int64_t y) {
-      const auto center = [](std::int64_t corner, int size) {
-        return static_cast<double>(corner) / static_cast<double>(plane_unit) + (size - 1) / 2.0;
-      };
-      return kernel_at(center(x, box.width), center(y, box.height));
-    });
-  }
-  return grid;
-}
-
 class SplineNoise final : public Model, public Gaussian, public Procedural {
  public:
   SplineNoise(SplineTexton texton, const SplineNoiseOptions& options)
       : texton_(std::move(texton)),
         options_(options),
-        grid_(make_grid(texton_, options)),
+        grid_(spline_noise_impacts(texton_, options)),
         scale_(std::sqrt((options.kernel_at ? 1.0 : static_cast<double>(texton_.coefficients.kernels.size())) /
                          grid_.intensity())),
         points_(texton_, scale_),
@@ -115,7 +87,7 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
     }
     const SplineRoute taken = route(domain);
     if (taken == SplineRoute::points) {
-      return sum_by_point(domain, key_of(seed));
+      return sum_by_point(domain, spline_noise_key(seed));
     }
     if (domain.step != 1) {
       throw std::invalid_argument(
@@ -124,14 +96,14 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
                       domain.step));
     }
     const RasterImpacts raster{
-        grid_, key_of(seed), {to_plane(domain.origin.x), to_plane(domain.origin.y)}, domain.size};
+        grid_, spline_noise_key(seed), {to_plane(domain.origin.x), to_plane(domain.origin.y)}, domain.size};
     return taken == SplineRoute::impacts ? sum_by_impact(texton_, framed_, raster, start_)
                                          : sum_by_convolution(texton_, scale_, raster, texton_.coefficients.mean);
   }
 
   void evaluate(std::span<const Point2> points, Seed seed, std::span<float> out) const override {
     require_points(points, out, channels());
-    sum_at(points, key_of(seed), Derivative::none, out);
+    sum_at(points, spline_noise_key(seed), Derivative::none, out);
     for (int c = 0; c < channels(); ++c) {
       for (float& v : out.subspan(static_cast<std::size_t>(c) * points.size(), points.size())) {
         v += start_[static_cast<std::size_t>(c)];
@@ -144,8 +116,8 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
       throw std::invalid_argument("gradient of texton noise of order 0: expected an order of at least 1");
     }
     require_points(points, out, 2 * channels());
-    sum_at(points, key_of(seed), Derivative::x, out.first(out.size() / 2));
-    sum_at(points, key_of(seed), Derivative::y, out.subspan(out.size() / 2));
+    sum_at(points, spline_noise_key(seed), Derivative::x, out.first(out.size() / 2));
+    sum_at(points, spline_noise_key(seed), Derivative::y, out.subspan(out.size() / 2));
   }
 
   const Gaussian* gaussian() const override { return options_.kernel_at ? nullptr : this; }
@@ -164,7 +136,6 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
 
  private:
   int channels() const { return texton_.coefficients.channels(); }
-  static std::uint64_t key_of(Seed seed) { return Stream(seed).child("texton noise").key(); }
 
   /// Σ_k ∫ h_k = Σ_k Σ_j α_k(j).
   double integral(int channel) const {
@@ -290,8 +261,38 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
 
 }  // namespace
 
-std::unique_ptr<Model> make_spline_noise(SplineTexton texton, const SplineNoiseOptions& options) {
+ImpactGrid spline_noise_impacts(const SplineTexton& texton, const SplineNoiseOptions& options) {
   require_spline_texton(texton);
+  if (!(std::isfinite(options.mni) && options.mni > 0)) {
+    throw std::invalid_argument(fmt::format("mni = {}: expected a finite mean number of impacts above 0", options.mni));
+  }
+  if (!(options.cell == 0 || (options.cell >= 0.01 && options.cell <= 16))) {
+    throw std::invalid_argument(
+        fmt::format("cell = {}: expected 0.01 to 16 sides of the support, or 0 for the fastest", options.cell));
+  }
+  const double paper_cell = 0.6;
+  const double fallback = options.impacts == ImpactProcess::paper ? paper_cell : best_cell(options.mni);
+  const double cell = options.cell > 0 ? options.cell : fallback;
+  ImpactGrid grid(options.impacts, options.mni / texton.support_area, cell * std::sqrt(texton.support_area),
+                  static_cast<int>(texton.coefficients.kernels.size()));
+  if (options.kernel_at) {
+    if (grid.mean_weight() != 0) {
+      throw std::invalid_argument("kernels chosen by place: expected impacts of random sign");
+    }
+    const Extent box = texton.coefficients.extent();
+    grid.choose_kernels([kernel_at = options.kernel_at, box](std::int64_t x, std::int64_t y) {
+      const auto center = [](std::int64_t corner, int size) {
+        return static_cast<double>(corner) / static_cast<double>(plane_unit) + (size - 1) / 2.0;
+      };
+      return kernel_at(center(x, box.width), center(y, box.height));
+    });
+  }
+  return grid;
+}
+
+std::uint64_t spline_noise_key(Seed seed) { return Stream(seed).child("texton noise").key(); }
+
+std::unique_ptr<Model> make_spline_noise(SplineTexton texton, const SplineNoiseOptions& options) {
   return std::make_unique<SplineNoise>(std::move(texton), options);
 }
 

@@ -5,6 +5,7 @@
 // with Poisson impacts (weights 1) or one signed impact a cell. Its covariance on any grid y + Z² is α * α~ * b.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -37,6 +38,10 @@ struct SplineNoiseOptions {
 /// Throws std::invalid_argument for coefficients of different sizes or not finite, an order out of range, or options
 /// out of range. The model is procedural, with a closed-form spectrum.
 std::unique_ptr<Model> make_spline_noise(SplineTexton texton, const SplineNoiseOptions& options);
+
+/// The impacts of that noise, drawn with the key that a seed gives. Throws as make_spline_noise does.
+ImpactGrid spline_noise_impacts(const SplineTexton& texton, const SplineNoiseOptions& options);
+std::uint64_t spline_noise_key(Seed seed);
 
 /// A reason why texton noise cannot be drawn there (a torus, a step or corner that is not finite or out of range).
 std::optional<std::string> refuse_spline_noise(const Domain& domain);

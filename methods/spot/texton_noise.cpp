@@ -155,7 +155,7 @@ SplineTexton fit_texton_noise(const Exemplar& exemplar, const Params& params, Se
   return fit_texton_noise(exemplar, support_of(params, exemplar.pixels.extent()), texton_noise_options(params), seed);
 }
 
-std::vector<ParamSpec> spline_noise_params() {
+std::vector<ParamSpec> spline_impacts_params() {
   return {{.name = "impacts",
            .default_value = std::string("stratified"),
            .unit = "",
@@ -174,20 +174,30 @@ std::vector<ParamSpec> spline_noise_params() {
            .unit = "support side",
            .help = "side of the cells that poisson and paper impacts are drawn by; 0: the fastest, 0.6 for paper",
            .min = 0,
-           .max = 16},
-          {.name = "route",
-           .default_value = std::string("auto"),
-           .unit = "",
-           .help = "how a raster is computed: point by point (any step), row by row of each impact, by Fourier "
-                   "transform of the impacts (convolution), or the fastest of them",
-           .choices = {"auto", "points", "impacts", "convolution"}}};
+           .max = 16}};
+}
+
+SplineNoiseOptions spline_impacts_options(const Params& params) {
+  return {.impacts = impact_process_named(params.text("impacts")),
+          .mni = params.number("mni"),
+          .cell = params.number("cell")};
+}
+
+std::vector<ParamSpec> spline_noise_params() {
+  std::vector<ParamSpec> all = spline_impacts_params();
+  all.push_back({.name = "route",
+                 .default_value = std::string("auto"),
+                 .unit = "",
+                 .help = "how a raster is computed: point by point (any step), row by row of each impact, by Fourier "
+                         "transform of the impacts (convolution), or the fastest of them",
+                 .choices = {"auto", "points", "impacts", "convolution"}});
+  return all;
 }
 
 SplineNoiseOptions spline_noise_options(const Params& params) {
-  return {.impacts = impact_process_named(params.text("impacts")),
-          .mni = params.number("mni"),
-          .cell = params.number("cell"),
-          .route = spline_route_named(params.text("route"))};
+  SplineNoiseOptions options = spline_impacts_options(params);
+  options.route = spline_route_named(params.text("route"));
+  return options;
 }
 
 MethodEntry texton_noise_entry() {

@@ -44,7 +44,11 @@ std::vector<ParamSpec> texton_fit_params();
 std::optional<std::string> refuse_texton_fit(const Problem& problem, const Params& params);
 SplineTexton fit_texton_noise(const Exemplar& exemplar, const Params& params, Seed seed);
 
-/// The options "impacts" (poisson|stratified|paper), "mni", "cell" and "route" of a noise of splines, and their values.
+/// The options "impacts" (poisson|stratified|paper), "mni" and "cell" of a noise of splines, and their values.
+std::vector<ParamSpec> spline_impacts_params();
+SplineNoiseOptions spline_impacts_options(const Params& params);
+
+/// The same and "route".
 std::vector<ParamSpec> spline_noise_params();
 SplineNoiseOptions spline_noise_options(const Params& params);
 

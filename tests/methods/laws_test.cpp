@@ -22,6 +22,9 @@ Params small_params(const MethodEntry& entry) {
   if (entry.name == "surface_noise") {
     given["surface"] = std::string("plane");  // the others are pictures, not fields
   }
+  if (entry.name == "filtered_noise") {
+    given["view"] = std::string("plane");
+  }
   return Params(entry.params, given);
 }
 
