@@ -25,7 +25,15 @@ TEST(MetricCatalog, NamesAndOrderAreThoseThatScriptsKnow) {
           "projection_distance_ratio", "spot_symmetry_error", "impact_mean_deviation", "impact_covariance_deviation",
           "impacts_on_pixel_ratio", "campbell_deviation", "dependence_reach", "distant_dependence", "torus_crop_error",
           "small_torus_crop_error", "torus_crop_deviation", "small_torus_crop_deviation", "kurtosis_slope",
-          "canonical_central_energy", "canonical_side_peak", "canonical_law_error", "distant_window_ratio"));
+          "canonical_central_energy", "canonical_side_peak", "canonical_law_error", "distant_window_ratio",
+          "bilinear_autocorrelation_error", "bilinear_power_least", "shifted_covariance_deviation",
+          "subpixel_covariance_deviation", "signed_mean_deviation", "signed_covariance_deviation",
+          "kept_channel_variance", "order_zero_difference", "knot_exponent", "subpixel_anisotropy", "subpixel_gradient",
+          "covariance_overshoot", "surface_mean_deviation", "surface_variance_deviation", "surface_impacts_ratio",
+          "surface_variance_ratio", "barycenter_distance_error", "barycenter_end_error", "neighbor_texton_correlation",
+          "unlike_start_correlation", "strip_border_ratio", "cells_visited", "impacts_drawn_ratio", "fetches_per_pixel",
+          "gaussian_count_mean", "gaussian_count_variance", "negative_count_part", "congruential_cell_correlation",
+          "hashed_cell_correlation", "counter_cell_correlation", "cell_time_ratio", "texton_time_ratio"));
 }
 
 TEST(MetricCatalog, EveryEntryIsDescribedAndCanBeMeasuredAtItsLevel) {
