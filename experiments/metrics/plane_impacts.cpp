@@ -37,14 +37,18 @@ std::optional<CellWork> work_with_cells_of_the_support(const Model& model, const
   for (int i = 0; i < points; ++i) {
     // In cell sides: so is half the support, 1/2.
     const double x = 4096 * random.uniform(), y = 4096 * random.uniform();
-    for (double cy = std::floor(y - 0.5); cy <= y + 0.5; ++cy) {
-      for (double cx = std::floor(x - 0.5); cx <= x + 0.5; ++cx) {
+    const auto first_x = static_cast<std::int64_t>(std::floor(x - 0.5));
+    const auto last_x = static_cast<std::int64_t>(std::floor(x + 0.5));
+    const auto last_y = static_cast<std::int64_t>(std::floor(y + 0.5));
+    for (auto cy = static_cast<std::int64_t>(std::floor(y - 0.5)); cy <= last_y; ++cy) {
+      for (std::int64_t cx = first_x; cx <= last_x; ++cx) {
         impacts.clear();
-        grid.draw_cell(stream.key(), static_cast<std::int64_t>(cx), static_cast<std::int64_t>(cy), impacts);
+        grid.draw_cell(stream.key(), cx, cy, impacts);
         sum.cells += 1;
         sum.drawn += static_cast<double>(impacts.size());
         for (const CellImpact& impact : impacts) {
-          const double dx = cx + 0x1p-24 * impact.x - x, dy = cy + 0x1p-24 * impact.y - y;
+          const double dx = static_cast<double>(cx) + 0x1p-24 * impact.x - x;
+          const double dy = static_cast<double>(cy) + 0x1p-24 * impact.y - y;
           if (std::max(std::fabs(dx), std::fabs(dy)) < 0.5) sum.used += 1;
         }
       }

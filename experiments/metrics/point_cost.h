@@ -1,6 +1,6 @@
 // What the time of texton noise depends on, point by point as a shader takes it (Galerne, Leclaire, Moisan, CGF 2017,
 // Sections 8 and 9): processor time of 30 Poisson impacts at 256 points so far apart that each draws its own impacts,
-// the median of 31 turns with what it is compared to. Nothing for models that sum no splines or those of more than one
+// the median of 42 turns with what it is compared to. Nothing for models that sum no splines or those of more than one
 // texton, or whose texton is zero in a channel.
 #pragma once
 

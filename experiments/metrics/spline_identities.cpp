@@ -83,12 +83,11 @@ double covariance_deviation(const SplineTexton& texton, ImpactProcess impacts, s
 }  // namespace
 
 std::optional<double> bilinear_autocorrelation_error(const Model&, const Target&, const Domain&) {
-  constexpr std::array stated{0.0, 1.0 / 6, 2.0 / 3, 1.0 / 6, 0.0};
+  const auto stated = [](int lag) { return lag == 0 ? 2.0 / 3 : std::abs(lag) == 1 ? 1.0 / 6 : 0; };
   double error = 0;
   for (int y = -2; y <= 2; ++y) {
     for (int x = -2; x <= 2; ++x) {
-      const double product = stated[static_cast<std::size_t>(x + 2)] * stated[static_cast<std::size_t>(y + 2)];
-      error = std::max(error, std::fabs(tent_correlation(x) * tent_correlation(y) - product));
+      error = std::max(error, std::fabs(tent_correlation(x) * tent_correlation(y) - stated(x) * stated(y)));
     }
   }
   return error;

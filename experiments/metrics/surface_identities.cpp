@@ -113,6 +113,7 @@ std::optional<double> surface_variance_deviation(const Model& model, const Targe
   });
   const SplineCovariance covariance(*texton);
   std::vector<double> expected;
+  expected.reserve(mean.size());
   for (int c = 0; c < covariance.channels(); ++c) {
     expected.push_back(volume_intensity(*texton) * support_side(*texton) / 3 * covariance.at(c, 0, 0));
   }
@@ -138,6 +139,8 @@ std::optional<double> surface_variance_ratio(const Model& model, const Target& t
   RandomSequence random(surface_stream(target, "surface_variance_ratio"));
   std::vector<Point2> of_plane;
   std::vector<SurfacePoint> of_surface;
+  of_plane.reserve(std::size_t{distant_rows} * distant_rows);
+  of_surface.reserve(of_plane.capacity());
   for (int i = 0; i < distant_rows; ++i) {
     for (int j = 0; j < distant_rows; ++j) {
       const Point2 place{distance * i + random.uniform(), distance * j + random.uniform()};
