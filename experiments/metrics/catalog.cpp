@@ -13,6 +13,7 @@
 #include "experiments/metrics/moments.h"
 #include "experiments/metrics/patch_distance.h"
 #include "experiments/metrics/spectral_distance.h"
+#include "experiments/metrics/spline_identity_catalog.h"
 #include "experiments/metrics/spot_identity_catalog.h"
 #include "experiments/metrics/texton_quality.h"
 #include "experiments/metrics/transport_identities.h"
@@ -345,8 +346,9 @@ constexpr std::array general_metrics{
 std::span<const MetricEntry> metric_catalog() {
   static const std::vector<MetricEntry> catalog = [] {
     std::vector<MetricEntry> entries(general_metrics.begin(), general_metrics.end());
-    const std::span<const MetricEntry> spot = spot_identity_metrics();
-    entries.insert(entries.end(), spot.begin(), spot.end());
+    for (const std::span<const MetricEntry> more : {spot_identity_metrics(), spline_identity_metrics()}) {
+      entries.insert(entries.end(), more.begin(), more.end());
+    }
     return entries;
   }();
   return catalog;

@@ -11,21 +11,29 @@ TEST(MetricCatalog, NamesAndOrderAreThoseThatScriptsKnow) {
   std::vector<std::string_view> names;
   names.reserve(metric_catalog().size());
   for (const MetricEntry& entry : metric_catalog()) names.push_back(entry.name);
-  EXPECT_THAT(names,
-              testing::ElementsAre(
-                  "rme", "rme_printed", "ot_distance", "rme_corrected", "rme_bound", "kept_variance", "kernel_kurtosis",
-                  "predicted_kurtosis", "local_kurtosis_least", "local_kurtosis_greatest", "poisson_impacts",
-                  "stratified_impacts", "mean_error", "color_covariance_error", "autocovariance_error_8",
-                  "autocovariance_error_32", "autocovariance_error_quarter", "log_spectral_distance", "skewness",
-                  "excess_kurtosis", "cramer_von_mises", "patch_distance", "limit_patch_distance", "analyze_seconds",
-                  "synthesize_seconds", "ns_per_pixel", "model_bytes", "operations_per_pixel", "modulus_error",
-                  "rayleigh_distance", "phase_uniformity", "circular_autocovariance_error", "periodic_laplacian_error",
-                  "axis_energy_ratio", "axis_power_error", "transport_identity_error", "window_transport_ratio",
-                  "projection_distance_ratio", "spot_symmetry_error", "impact_mean_deviation",
-                  "impact_covariance_deviation", "impacts_on_pixel_ratio", "campbell_deviation", "dependence_reach",
-                  "distant_dependence", "torus_crop_error", "small_torus_crop_error", "torus_crop_deviation",
-                  "small_torus_crop_deviation", "kurtosis_slope", "canonical_central_energy", "canonical_side_peak",
-                  "canonical_law_error", "distant_window_ratio", "reference_error"));
+  EXPECT_THAT(
+      names,
+      testing::ElementsAre(
+          "rme", "rme_printed", "ot_distance", "rme_corrected", "rme_bound", "kept_variance", "kernel_kurtosis",
+          "predicted_kurtosis", "local_kurtosis_least", "local_kurtosis_greatest", "poisson_impacts",
+          "stratified_impacts", "mean_error", "color_covariance_error", "autocovariance_error_8",
+          "autocovariance_error_32", "autocovariance_error_quarter", "log_spectral_distance", "skewness",
+          "excess_kurtosis", "cramer_von_mises", "patch_distance", "limit_patch_distance", "analyze_seconds",
+          "synthesize_seconds", "ns_per_pixel", "model_bytes", "operations_per_pixel", "modulus_error",
+          "rayleigh_distance", "phase_uniformity", "circular_autocovariance_error", "periodic_laplacian_error",
+          "axis_energy_ratio", "axis_power_error", "transport_identity_error", "window_transport_ratio",
+          "projection_distance_ratio", "spot_symmetry_error", "impact_mean_deviation", "impact_covariance_deviation",
+          "impacts_on_pixel_ratio", "campbell_deviation", "dependence_reach", "distant_dependence", "torus_crop_error",
+          "small_torus_crop_error", "torus_crop_deviation", "small_torus_crop_deviation", "kurtosis_slope",
+          "canonical_central_energy", "canonical_side_peak", "canonical_law_error", "distant_window_ratio",
+          "reference_error", "bilinear_autocorrelation_error", "bilinear_power_least", "shifted_covariance_deviation",
+          "subpixel_covariance_deviation", "signed_mean_deviation", "signed_covariance_deviation",
+          "kept_channel_variance", "order_zero_difference", "knot_exponent", "subpixel_anisotropy", "subpixel_gradient",
+          "covariance_overshoot", "surface_mean_deviation", "surface_variance_deviation", "surface_impacts_ratio",
+          "surface_variance_ratio", "barycenter_distance_error", "barycenter_end_error", "neighbor_texton_correlation",
+          "unlike_start_correlation", "strip_border_ratio", "cells_visited", "impacts_drawn_ratio", "fetches_per_pixel",
+          "gaussian_count_mean", "gaussian_count_variance", "negative_count_part", "congruential_cell_correlation",
+          "hashed_cell_correlation", "counter_cell_correlation", "cell_time_ratio", "texton_time_ratio"));
 }
 
 TEST(MetricCatalog, EveryEntryIsDescribedAndCanBeMeasuredAtItsLevel) {
