@@ -6,6 +6,7 @@
 
 #include "experiments/metrics/replicates.h"
 #include "methods/base/impact_grid.h"
+#include "methods/spot/spline_noise.h"
 
 namespace textonbench {
 namespace {
@@ -23,24 +24,26 @@ struct CellWork {
   double cells = 0, drawn = 0, used = 0;
 };
 
-std::optional<CellWork> work_with_cells_of_the_support(const Model& model, const Target& target) {
-  const SplineTexton* texton = model.spline_texton();
-  if (texton == nullptr) return std::nullopt;
+std::optional<CellWork> work_at_points(const Model& model, const Target& target) {
+  const SplineNoiseOptions* noise = spline_noise_of(model);
+  if (noise == nullptr || noise->kernel_at) return std::nullopt;
   constexpr int points = 4096;
-  const Extent extent = texton->coefficients.extent();
-  const int side = std::max(extent.width, extent.height) + texton->order;
-  const ImpactGrid grid(ImpactProcess::poisson, plane_mni / (static_cast<double>(side) * side), side, 1);
+  const SplineTexton& texton = *model.spline_texton();
+  const Extent extent = texton.coefficients.extent();
+  const ImpactGrid grid = spline_noise_impacts(texton, *noise);
+  const double reach_x = (extent.width + texton.order) / (2 * grid.side());
+  const double reach_y = (extent.height + texton.order) / (2 * grid.side());
   const Stream stream = impact_stream(target, "plane_impacts");
   RandomSequence random(stream);
   CellWork sum;
   std::vector<CellImpact> impacts;
   for (int i = 0; i < points; ++i) {
-    // In cell sides: so is half the support, 1/2.
+    // In cell sides.
     const double x = 4096 * random.uniform(), y = 4096 * random.uniform();
-    const auto first_x = static_cast<std::int64_t>(std::floor(x - 0.5));
-    const auto last_x = static_cast<std::int64_t>(std::floor(x + 0.5));
-    const auto last_y = static_cast<std::int64_t>(std::floor(y + 0.5));
-    for (auto cy = static_cast<std::int64_t>(std::floor(y - 0.5)); cy <= last_y; ++cy) {
+    const auto first_x = static_cast<std::int64_t>(std::floor(x - reach_x));
+    const auto last_x = static_cast<std::int64_t>(std::floor(x + reach_x));
+    const auto last_y = static_cast<std::int64_t>(std::floor(y + reach_y));
+    for (auto cy = static_cast<std::int64_t>(std::floor(y - reach_y)); cy <= last_y; ++cy) {
       for (std::int64_t cx = first_x; cx <= last_x; ++cx) {
         impacts.clear();
         grid.draw_cell(stream.key(), cx, cy, impacts);
@@ -49,7 +52,7 @@ std::optional<CellWork> work_with_cells_of_the_support(const Model& model, const
         for (const CellImpact& impact : impacts) {
           const double dx = static_cast<double>(cx) + 0x1p-24 * impact.x - x;
           const double dy = static_cast<double>(cy) + 0x1p-24 * impact.y - y;
-          if (std::max(std::fabs(dx), std::fabs(dy)) < 0.5) sum.used += 1;
+          if (std::fabs(dx) < reach_x && std::fabs(dy) < reach_y) sum.used += 1;
         }
       }
     }
@@ -142,17 +145,17 @@ double grid_neighbor_deviation(const Target& target, ImpactProcess process) {
 }  // namespace
 
 std::optional<double> cells_visited(const Model& model, const Target& target, const Domain&) {
-  const auto work = work_with_cells_of_the_support(model, target);
+  const auto work = work_at_points(model, target);
   return work ? std::optional(work->cells) : std::nullopt;
 }
 
 std::optional<double> impacts_drawn_ratio(const Model& model, const Target& target, const Domain&) {
-  const auto work = work_with_cells_of_the_support(model, target);
-  return work ? std::optional(work->drawn / plane_mni) : std::nullopt;
+  const auto work = work_at_points(model, target);
+  return work ? std::optional(work->drawn / spline_noise_of(model)->mni) : std::nullopt;
 }
 
 std::optional<double> fetches_per_pixel(const Model& model, const Target& target, const Domain&) {
-  const auto work = work_with_cells_of_the_support(model, target);
+  const auto work = work_at_points(model, target);
   return work ? std::optional(work->used) : std::nullopt;
 }
 

@@ -1,6 +1,5 @@
 // Statements on the impacts of texton noise and their cells (Galerne, Leclaire, Moisan, CGF 2017, Sections 1 and 8),
-// counted. Points and keys are drawn from the exemplar's name; r is the longer side of the support of the model's
-// splines. Nothing for models that sum no splines.
+// counted. Points and keys are drawn from the exemplar's name. Nothing for models that sum no splines.
 #pragma once
 
 #include <optional>
@@ -9,13 +8,14 @@
 
 namespace textonbench {
 
-/// Mean number, over 4096 random points x, of the cells of side r that meet x + [−r/2, r/2]².
+/// Mean number, over 4096 random points x, of the cells of the model's own impacts that meet the reach of x: the points
+/// whose kernels cover x, a rectangle of the support's size about x.
 std::optional<double> cells_visited(const Model& model, const Target& target, const Domain& domain);
 
-/// Mean number of the impacts that these cells hold at 30 impacts r⁻², over 30.
+/// Mean number of the impacts that these cells hold, over MNI.
 std::optional<double> impacts_drawn_ratio(const Model& model, const Target& target, const Domain& domain);
 
-/// Mean number of those of them that lie in x + [−r/2, r/2]²: the values of the texton that a point asks for.
+/// Mean number of those of them that lie in the reach of x: the values of the texton that a point asks for.
 std::optional<double> fetches_per_pixel(const Model& model, const Target& target, const Domain& domain);
 
 // Of the rounded Gaussian number that the paper takes for a Poisson number (methods/base/impact_grid.h), over 2^22

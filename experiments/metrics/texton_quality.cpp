@@ -7,6 +7,7 @@
 #include "methods/spot/kernel_moments.h"
 #include "methods/spot/optimal_texton.h"
 #include "methods/spot/spline_moments.h"
+#include "methods/spot/spline_noise.h"
 #include "methods/spot/spot_noise.h"
 
 namespace textonbench {
@@ -38,6 +39,18 @@ std::optional<KurtosisRange> local_kurtosis(const Model& model, const Domain& do
     widest = {std::min(widest.least, range.least), std::max(widest.greatest, range.greatest)};
   }
   return widest;
+}
+
+/// Mean over the channels.
+std::optional<double> spline_noise_kurtosis(const Model& model, const SplineNoiseOptions& noise) {
+  if (noise.impacts == ImpactProcess::paper || noise.kernel_at) return std::nullopt;
+  const SplineTexton& texton = *model.spline_texton();
+  const bool stratified = noise.impacts == ImpactProcess::stratified;
+  double sum = 0;
+  for (const double channel : stratified ? stratified_spline_kurtosis(texton, noise.mni) : spline_kurtosis(texton)) {
+    sum += stratified ? channel : channel / noise.mni;
+  }
+  return sum / texton.coefficients.channels();
 }
 
 }  // namespace
@@ -87,6 +100,7 @@ std::optional<double> kernel_kurtosis(const Model& model, const Target&, const D
 }
 
 std::optional<double> predicted_kurtosis(const Model& model, const Target&, const Domain& domain) {
+  if (const SplineNoiseOptions* splines = spline_noise_of(model)) return spline_noise_kurtosis(model, *splines);
   const SpotNoiseOptions* noise = spot_noise_of(model);
   if (noise == nullptr) return std::nullopt;
   if (noise->impacts == Impacts::gaussian) return 0;

@@ -12,6 +12,7 @@
 #include "methods/base/ground_view.h"
 #include "methods/base/parallel.h"
 #include "methods/spot/filtered_sum.h"
+#include "methods/spot/texton_filter.h"
 #include "methods/spot/texton_noise.h"
 
 namespace textonbench {
@@ -224,6 +225,10 @@ class FilteredNoise final : public Model {
 std::optional<std::string> refuse_filtered_noise(const Problem& problem, const Params& params, const Domain& domain) {
   if (auto reason = refuse_texton_fit(problem, params)) {
     return reason;
+  }
+  if (const int channels = problem.exemplar.pixels.channels(); channels > MipChain::max_channels) {
+    return fmt::format("filtered_noise has mip chains of at most {} channels: \"{}\" has {}", MipChain::max_channels,
+                       problem.exemplar.name, channels);
   }
   if (params.integer("order") != 1) {
     return fmt::format("order = {}: mip chains are of bilinear kernels, expected 1", params.integer("order"));

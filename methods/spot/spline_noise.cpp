@@ -120,6 +120,7 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
     sum_at(points, spline_noise_key(seed), Derivative::y, out.subspan(out.size() / 2));
   }
 
+  const SplineNoiseOptions& options() const { return options_; }
   const Gaussian* gaussian() const override { return options_.kernel_at ? nullptr : this; }
   const Procedural* procedural() const override { return this; }
   const SplineTexton* spline_texton() const override { return &texton_; }
@@ -294,6 +295,11 @@ std::uint64_t spline_noise_key(Seed seed) { return Stream(seed).child("texton no
 
 std::unique_ptr<Model> make_spline_noise(SplineTexton texton, const SplineNoiseOptions& options) {
   return std::make_unique<SplineNoise>(std::move(texton), options);
+}
+
+const SplineNoiseOptions* spline_noise_of(const Model& model) {
+  const auto* noise = dynamic_cast<const SplineNoise*>(&model);
+  return noise == nullptr ? nullptr : &noise->options();
 }
 
 std::optional<std::string> refuse_spline_noise(const Domain& domain) {

@@ -39,6 +39,9 @@ struct SplineNoiseOptions {
 /// out of range. The model is procedural, with a closed-form spectrum.
 std::unique_ptr<Model> make_spline_noise(SplineTexton texton, const SplineNoiseOptions& options);
 
+/// What such a noise was made with; null for another model.
+const SplineNoiseOptions* spline_noise_of(const Model& model);
+
 /// The impacts of that noise, drawn with the key that a seed gives. Throws as make_spline_noise does.
 ImpactGrid spline_noise_impacts(const SplineTexton& texton, const SplineNoiseOptions& options);
 std::uint64_t spline_noise_key(Seed seed);

@@ -23,9 +23,9 @@ MipChain::Level::Level(Extent size)
     : extent(size), texels(stride() * (static_cast<std::size_t>(size.height) + 2), Texel::Zero()) {}
 
 MipChain::MipChain(const Image& coefficients) {
-  if (coefficients.channels() > Texel::SizeAtCompileTime) {
-    throw std::invalid_argument(fmt::format("mip chain of {} channels: expected at most {}", coefficients.channels(),
-                                            +Texel::SizeAtCompileTime));
+  if (coefficients.channels() > max_channels) {
+    throw std::invalid_argument(
+        fmt::format("mip chain of {} channels: expected at most {}", coefficients.channels(), max_channels));
   }
   levels_.emplace_back(coefficients.extent());
   for (int y = 0; y < coefficients.height(); ++y) {

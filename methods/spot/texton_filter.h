@@ -24,7 +24,9 @@ enum class TextonFilter { none, trilinear, anisotropic, ewa };
 /// around α becomes at level L: no texel mixes opposite borders, and none is cut.
 class MipChain {
  public:
-  /// Throws std::invalid_argument for coefficients of more than 4 channels.
+  static constexpr int max_channels = Texel::SizeAtCompileTime;
+
+  /// Throws std::invalid_argument for coefficients of more than max_channels channels.
   explicit MipChain(const Image& coefficients);
 
   /// L.

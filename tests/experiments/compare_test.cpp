@@ -11,6 +11,7 @@
 
 #include "experiments/pairing.h"
 #include "tests/experiments/synthetic_results.h"
+#include "tests/sanitizer.h"
 #include "tests/temporary_folder.h"
 
 namespace textonbench::compare_test {
@@ -107,6 +108,7 @@ TEST(Compare, ALossOfOneMethodIsNotHiddenByAnother) {
 }
 
 TEST(Compare, NoiseAloneRaisesFewFalseAlarms) {
+  if (sanitized) GTEST_SKIP() << "takes long in a build with a sanitizer";
   int alarms = 0, regressions = 0;
   for (std::uint64_t i = 0; i < 200; ++i) {
     const Comparison comparison =

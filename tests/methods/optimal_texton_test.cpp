@@ -9,6 +9,7 @@
 #include "methods/spot/kernel_moments.h"
 #include "methods/spot/texton_error.h"
 #include "tests/methods/plane_waves.h"
+#include "tests/sanitizer.h"
 
 namespace textonbench::optimal_texton_test {
 
@@ -74,6 +75,7 @@ TEST(OptimalTexton, ReportsTheRelativeModelErrorOfItsKernels) {
 }
 
 TEST(OptimalTexton, SixtyEvaluationsReachAThousandProjections) {
+  if (sanitized) GTEST_SKIP() << "takes long in a build with a sanitizer";
   for (const int channels : {1, 3}) {
     const GaussianModel model = smooth_model({64, 64}, channels);
     const Image mask = full_mask({15, 15});
@@ -93,6 +95,7 @@ TEST(OptimalTexton, SixtyEvaluationsReachAThousandProjections) {
 }
 
 TEST(OptimalTexton, MoreKernelsComeCloserAndTheBoundIsNear) {
+  if (sanitized) GTEST_SKIP() << "takes long in a build with a sanitizer";
   for (const int channels : {1, 3}) {
     const GaussianModel model = smooth_model({64, 64}, channels);
     const Image mask = full_mask({15, 15});
@@ -110,6 +113,7 @@ TEST(OptimalTexton, MoreKernelsComeCloserAndTheBoundIsNear) {
 }
 
 TEST(OptimalTexton, GapIsSmallOnAPhotograph) {
+  if (sanitized) GTEST_SKIP() << "takes long in a build with a sanitizer";
   const std::filesystem::path file = "/usr/share/mypaint/backgrounds/mrmamurk/mamurk_e_1.png";
   if (!std::filesystem::exists(file)) {
     GTEST_SKIP() << "install the package mypaint-data-extras for " << file;
@@ -123,6 +127,7 @@ TEST(OptimalTexton, GapIsSmallOnAPhotograph) {
 }
 
 TEST(OptimalTexton, BeatsTheProjectionsOfTheReferenceTexture) {
+  if (sanitized) GTEST_SKIP() << "takes long in a build with a sanitizer";
   const auto folder = folder_from("TEXTONBENCH_DATA");
   if (!folder) {
     GTEST_SKIP() << "set TEXTONBENCH_DATA to the folder of the papers' exemplars";

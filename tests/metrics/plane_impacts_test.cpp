@@ -20,7 +20,7 @@ class PlaneImpacts : public testing::Test {
   const Target target_ = make_target(exemplar_);
   const Domain domain_{.size = {64, 64}};
   const std::unique_ptr<Model> model_ =
-      make_spline_noise({.coefficients = test_texton({9, 7}, 1, 1), .order = 1, .support_area = 80}, {});
+      make_spline_noise({.coefficients = test_texton({9, 9}, 1, 1), .order = 1, .support_area = 100}, {.cell = 1});
 };
 
 // Of 4096 Poisson numbers of mean 120 the mean has an error of 0.17, of those of mean 30 one of 0.09: five of each.

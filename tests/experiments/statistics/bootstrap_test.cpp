@@ -1,4 +1,5 @@
 #include "experiments/statistics/bootstrap.h"
+#include "tests/sanitizer.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -48,6 +49,7 @@ void record(const Design& design, const char* law, double share) {
 }
 
 TEST(Bootstrap, NinetyFivePercentIntervalCoversAsOften) {
+  if (sanitized) GTEST_SKIP() << "takes long in a build with a sanitizer";
   for (const Design& design : {Design{13, 4, 1, 0.5}, Design{13, 4, 0.2, 2}, Design{13, 1, 1, 1}, Design{6, 4, 1, 0.5},
                                Design{3, 4, 1, 0.5}, Design{1, 8, 0, 1}}) {
     const double share = coverage(design, gaussian);
@@ -58,6 +60,7 @@ TEST(Bootstrap, NinetyFivePercentIntervalCoversAsOften) {
 }
 
 TEST(Bootstrap, CoversSkewedDataToo) {
+  if (sanitized) GTEST_SKIP() << "takes long in a build with a sanitizer";
   for (const Design& design : {Design{13, 4, 1, 0.5}, Design{13, 4, 0.2, 2}, Design{20, 10, 1, 1}}) {
     const double share = coverage(design, skewed);
     record(design, "skewed", share);
