@@ -116,7 +116,7 @@ TEST(ClaimsOfThePapers, AreAllThereAndNameWhatExists) {
   const Ledger ledger = read_ledger(TEXTONBENCH_SOURCE_DIR, exemplars, Profile::quick);
   std::map<char, int> printed;
   for (const Claim& claim : ledger.claims) {
-    if (claim.id.size() == 3) ++printed[claim.id.front()];
+    if (claim.id.size() == 3 && claim.id.front() != 'X') ++printed[claim.id.front()];
   }
   EXPECT_EQ(printed, (std::map<char, int>{{'E', 30}, {'L', 41}, {'S', 41}, {'T', 51}}));
   EXPECT_TRUE(ledger.plans.contains("lectures2022/claims"));

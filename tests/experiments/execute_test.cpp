@@ -60,10 +60,15 @@ TEST_F(ExecuteTest, EveryMetricIsMeasuredWithWhatItsLevelPromises) {
   for (const MetricEntry& metric : metric_catalog()) spec.metrics.emplace_back(metric.name);
   const Record record = execute_here(spec);
   for (const MetricEntry& metric : metric_catalog()) {
-    constexpr std::array of_textons_only{"texton_quality", "spot_identities", "kurtosis_slope", "torus_crop",
-                                         "window_cost"};
-    const bool of_textons =
-        std::ranges::find(of_textons_only, metric.source) != of_textons_only.end() || metric.of_limit != nullptr;
+    constexpr std::array sources{"texton_quality",    "spot_identities",    "kurtosis_slope",
+                                 "torus_crop",        "window_cost",        "reference_error",
+                                 "spline_smoothness", "surface_identities", "point_cost"};
+    constexpr std::array names{"shifted_covariance_deviation", "subpixel_covariance_deviation",
+                               "signed_mean_deviation",        "signed_covariance_deviation",
+                               "kept_channel_variance",        "cells_visited",
+                               "impacts_drawn_ratio",          "fetches_per_pixel"};
+    const bool of_textons = std::ranges::find(sources, metric.source) != sources.end() ||
+                            std::ranges::find(names, metric.name) != names.end() || metric.of_limit != nullptr;
     ASSERT_EQ(record["metrics"].contains(metric.name), !of_textons) << metric.name;
     if (of_textons) continue;
     const Record& value = record["metrics"][std::string(metric.name)];
