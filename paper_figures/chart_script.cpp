@@ -110,7 +110,7 @@ std::string axes(const ChartContents& chart) {
                                  static_cast<double>(chart.rows.size()) + 0.5);
   text += "set border 1 lc rgb \"#8a8f98\" lw 1\nset tics scale 0.4 nomirror textcolor rgb \"black\"\n";
   text += "set grid xtics lt 1 lw 1 lc rgb \"#e3e5e8\"\nset xtics out offset 0,0.2\n";
-  if (chart.logarithmic) text += "set logscale x\nset format x \"%g\"\n" + decade_tics('x', range.low, range.high);
+  if (chart.logarithmic) text += "set logscale x\nset format x \"%g\"\n" + logarithmic_tics('x', range.low, range.high);
   text += fmt::format("set xlabel {} offset 0,0.2\n", gnuplot_quoted(axis_title(*chart.metric)));
   text += "set ytics scale 0 (";
   for (std::size_t row = 0; row < chart.rows.size(); ++row) {

@@ -46,13 +46,22 @@ std::string axis_title(const MetricEntry& metric) {
   return text;
 }
 
-std::string decade_tics(char axis, double low, double high) {
-  std::vector<std::string> tics;
-  for (int e = static_cast<int>(std::ceil(std::log10(low))); e <= std::floor(std::log10(high)); ++e) {
+std::string logarithmic_tics(char axis, double low, double high) {
+  const int first = static_cast<int>(std::floor(std::log10(low)));
+  const int last = static_cast<int>(std::ceil(std::log10(high)));
+  std::vector<std::string> decades, steps;
+  for (int e = first; e <= last; ++e) {
     const bool plain = e >= -3 && e <= 3;
-    tics.push_back(fmt::format("'{}' 1e{}", plain ? format_exact(std::pow(10.0, e)) : format_power_of_ten(e), e));
+    for (const int digit : {1, 2, 5}) {
+      const std::string value = fmt::format("{}e{}", digit, e);
+      const double number = std::stod(value);
+      if (number < low || number > high) continue;
+      steps.push_back(fmt::format("'{}' {}", plain ? format_exact(number) : value, value));
+      if (digit > 1) continue;
+      decades.push_back(fmt::format("'{}' {}", plain ? format_exact(number) : format_power_of_ten(e), value));
+    }
   }
-  return tics.size() < 3 ? "" : fmt::format("set {}tics ({})\n", axis, fmt::join(tics, ", "));
+  return fmt::format("set {}tics ({})\n", axis, fmt::join(decades.size() < 3 ? steps : decades, ", "));
 }
 
 std::vector<KeyItem> lay_out_key(int left, const std::vector<std::string>& texts) {

@@ -26,8 +26,8 @@ std::string series_line(std::size_t series, double width);
 /// "Relative model error (lower is better)".
 std::string axis_title(const MetricEntry& metric);
 
-/// `set xtics (…)` (or ytics) with one tick a decade; empty within a decade or two, where gnuplot's own ticks say more.
-std::string decade_tics(char axis, double low, double high);
+/// `set xtics (…)` (or ytics) with one tick a decade, or three where there are fewer than three decades.
+std::string logarithmic_tics(char axis, double low, double high);
 
 /// An entry of the key above a chart, from `x` in SVG pixels on, in its line.
 struct KeyItem {

@@ -69,8 +69,8 @@ std::string curve_axes(const CurveContents& curve) {
   std::string text = fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.low, x.high, y.low, y.high);
   text += "set border 3 lc rgb \"#8a8f98\" lw 1\nset tics scale 0.4 nomirror textcolor rgb \"black\"\n";
   text += "set grid lt 1 lw 1 lc rgb \"#e3e5e8\"\n";
-  if (curve.logarithmic_x) text += "set logscale x\nset format x \"%g\"\n" + decade_tics('x', x.low, x.high);
-  if (curve.logarithmic_y) text += "set logscale y\nset format y \"%g\"\n" + decade_tics('y', y.low, y.high);
+  if (curve.logarithmic_x) text += "set logscale x\nset format x \"%g\"\n" + logarithmic_tics('x', x.low, x.high);
+  if (curve.logarithmic_y) text += "set logscale y\nset format y \"%g\"\n" + logarithmic_tics('y', y.low, y.high);
   return text + fmt::format("set xlabel {} offset 0,0.2\nset ylabel {}\n", gnuplot_quoted(curve.parameter),
                             gnuplot_quoted(axis_title(*curve.metric)));
 }

@@ -82,8 +82,8 @@ std::string front_axes(const FrontContents& front) {
   std::string text = fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.low, x.high, y.low, y.high);
   text += "set border 3 lc rgb \"#8a8f98\" lw 1\nset tics scale 0.4 nomirror textcolor rgb \"black\"\n";
   text += "set grid lt 1 lw 1 lc rgb \"#e3e5e8\"\nset logscale x\nset format x \"%g\"\n";
-  text += decade_tics('x', x.low, x.high);
-  if (front.logarithmic) text += "set logscale y\nset format y \"%g\"\n" + decade_tics('y', y.low, y.high);
+  text += logarithmic_tics('x', x.low, x.high);
+  if (front.logarithmic) text += "set logscale y\nset format y \"%g\"\n" + logarithmic_tics('y', y.low, y.high);
   return text + fmt::format("set xlabel {} offset 0,0.2\nset ylabel {}\n", gnuplot_quoted(axis_title(*front.cost)),
                             gnuplot_quoted(axis_title(*front.quality)));
 }
