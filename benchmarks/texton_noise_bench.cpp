@@ -4,8 +4,8 @@
 //
 //   scalar_over_*      how many times longer the scalar loop takes, per pixel, with the same impacts' process
 //   *_over_fftw        against four plain FFTW transforms of the padded raster (the impacts', and one a channel back)
-//   impacts_over_floor against the arithmetic: 8 operations a pixel, channel and impact at the rate at which saxpy runs
-//                      from the L1 cache
+//   impacts_over_floor against the plain arithmetic, 8 operations a pixel, channel and impact at the rate at which
+//                      saxpy runs from the L1 cache; tiles keep their sums in registers and go below it
 //   auto_over_best     the route that the cost model picks over the fastest one
 #include <benchmark/benchmark.h>
 #include <fftw3.h>

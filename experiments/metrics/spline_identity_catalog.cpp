@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "experiments/metrics/exemplar_patches.h"
 #include "experiments/metrics/mixing_identities.h"
 #include "experiments/metrics/plane_impacts.h"
 #include "experiments/metrics/point_cost.h"
@@ -97,15 +98,13 @@ std::span<const MetricEntry> spline_identity_metrics() {
       spline_identity("strip_border_ratio", "Changes across the borders of strips against inside", "1", Better::neither,
                       "mixing_identities", strip_border_ratio,
                       "mean squared horizontal difference, at borders / elsewhere (Texton Noise 2017, 7); 1"),
-      spline_identity("cells_visited", "Cells that a point visits", "cell", Better::neither,
-                      "plane_impacts", cells_visited,
- "mean number counted (Texton Noise 2017, 8); (1 + r / a)²"),
+      spline_identity("cells_visited", "Cells that a point visits", "cell", Better::neither, "plane_impacts",
+                      cells_visited, "mean number counted (Texton Noise 2017, 8); (1 + r / a)²"),
       spline_identity("impacts_drawn_ratio", "Impacts drawn for a point over MNI", "1", Better::neither,
                       "plane_impacts", impacts_drawn_ratio,
                       "mean number counted / MNI (Texton Noise 2017, 8); (1 + a / r)²"),
       spline_identity("fetches_per_pixel", "Values of the texton that a point asks for", "fetch", Better::neither,
-                      "plane_impacts", fetches_per_pixel,
-                      "mean number counted (Texton Noise 2017, 1); MNI"),
+                      "plane_impacts", fetches_per_pixel, "mean number counted (Texton Noise 2017, 1); MNI"),
       spline_identity("gaussian_count_mean", "Mean of Gaussian numbers of impacts", "1", Better::neither,
                       "plane_impacts", gaussian_count_mean,
                       "of clamped numbers / 11.7 (Texton Noise 2017, 8); 1 for Poisson numbers"),
@@ -131,6 +130,9 @@ std::span<const MetricEntry> spline_identity_metrics() {
       spline_identity("texton_time_ratio", "Time against that of a constant texton", "1", Better::neither, "point_cost",
                       texton_time_ratio,
                       "point by point, one size (Texton Noise 2017, 9); 1 where the spectrum does not matter"),
+      spline_identity("exemplar_patch_distance", "Patch distance of the exemplar itself", "1", Better::neither,
+                      "exemplar_patches", exemplar_patch_distance,
+                      "to its own Gaussian law (Texton Noise 2017, 9); the floor of patch_distance if it is Gaussian"),
   };
   return entries;
 }

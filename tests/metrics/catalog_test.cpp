@@ -33,7 +33,8 @@ TEST(MetricCatalog, NamesAndOrderAreThoseThatScriptsKnow) {
           "surface_variance_ratio", "barycenter_distance_error", "barycenter_end_error", "neighbor_texton_correlation",
           "unlike_start_correlation", "strip_border_ratio", "cells_visited", "impacts_drawn_ratio", "fetches_per_pixel",
           "gaussian_count_mean", "gaussian_count_variance", "negative_count_part", "congruential_cell_correlation",
-          "hashed_cell_correlation", "counter_cell_correlation", "cell_time_ratio", "texton_time_ratio"));
+          "hashed_cell_correlation", "counter_cell_correlation", "cell_time_ratio", "texton_time_ratio",
+          "exemplar_patch_distance"));
 }
 
 TEST(MetricCatalog, EveryEntryIsDescribedAndCanBeMeasuredAtItsLevel) {
