@@ -12,12 +12,12 @@ double distance_of(const Exemplar& exemplar) {
   return exemplar_patch_distance(*model, make_target(exemplar), {}).value();
 }
 
-TEST(ExemplarPatches, TellAGaussianExemplarFromOneOfTwoValues) {
+TEST(ExemplarPatches, TellAGaussianExemplarFromSparseSpots) {
   const Exemplar gaussian = smooth_exemplar({128, 128}, 3);
-  Exemplar binary = gaussian;
-  binary.pixels = mapped(binary.pixels, [](double v, int c) { return v > 0.5 - 0.1 * c ? 1.0 : 0.0; });
-  EXPECT_LT(distance_of(gaussian), 0.01);
-  EXPECT_GT(distance_of(binary), 10 * distance_of(gaussian));
+  Exemplar spots = gaussian;
+  spots.pixels = mapped(spots.pixels, [](double v, int c) { return v > 0.75 - 0.15 * c ? 1.0 : 0.0; });
+  EXPECT_LT(distance_of(gaussian), 0.02);
+  EXPECT_GT(distance_of(spots), 5 * distance_of(gaussian));
 }
 
 }  // namespace textonbench::exemplar_patches_test
