@@ -57,7 +57,8 @@ TEST_F(PlaneImpacts, Mixtures) {
 }
 
 TEST_F(PlaneImpacts, NothingForExemplarsTooSmallToCrop) {
-  const Target small = make_target(smooth_exemplar({12, 12}, 3));
+  const Exemplar small_exemplar = smooth_exemplar({12, 12}, 3);
+  const Target small = make_target(small_exemplar);
   for (const auto metric : {barycenter_distance_error, barycenter_end_error, neighbor_texton_correlation,
                             unlike_start_correlation, strip_border_ratio}) {
     EXPECT_FALSE(metric(*model_, small, domain_));
