@@ -1,5 +1,5 @@
-// Whether this build runs under the address sanitizer, some ten times slower: tests of statistics over many trials, whose
-// code smaller tests run as well, are left to the other builds.
+// Whether this build runs under the address sanitizer, some ten times slower: tests of statistics over many trials,
+// whose code smaller tests run as well, are left to the other builds.
 #pragma once
 
 namespace textonbench {

@@ -22,6 +22,7 @@ struct Target {
   Autocovariance covariance;  ///< of `gaussian`
 };
 Target make_target(const Exemplar& exemplar);
+Target make_target(Exemplar&&) = delete;  // it would outlive its exemplar
 
 /// A number with its standard error over seeds and the value that samples of the exact Gaussian law would score.
 struct MetricValue {

@@ -38,7 +38,8 @@ class Constant final : public Model {
 
 /// ∫ (a β^1)² = a² (2/3)² in the plane.
 TEST(ReferenceError, IsInStandardDeviationsOfTheNoiseAndLeavesABackgroundOut) {
-  const Target target = make_target(test_exemplar({12, 12}, 3));
+  const Exemplar exemplar = test_exemplar({12, 12}, 3);
+  const Target target = make_target(exemplar);
   SplineTexton texton;
   texton.support_area = 4;
   Image& coefficient = texton.coefficients.kernels.emplace_back(Extent{1, 1}, 3);

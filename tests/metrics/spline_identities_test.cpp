@@ -115,7 +115,8 @@ TEST_F(SplineIdentities, TheMetricsDrawTheTextonAndNotTheModel) {
 TEST_F(SplineIdentities, OrderZeroIsTheDiscreteTexton) {
   const SplineTexton texton = spline_texton_of({9, 7}, 1, 1);
   EXPECT_EQ(of(order_zero_difference, texton), 0);
-  const Target narrow = make_target(smooth_exemplar({64, 24}, 1));
+  const Exemplar exemplar = smooth_exemplar({64, 24}, 1);
+  const Target narrow = make_target(exemplar);
   EXPECT_FALSE(order_zero_difference(Impostor(texton), narrow, domain_));
 }
 

@@ -1,5 +1,4 @@
 #include "experiments/statistics/bootstrap.h"
-#include "tests/sanitizer.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,6 +8,8 @@
 #include <functional>
 #include <limits>
 #include <stdexcept>
+
+#include "tests/sanitizer.h"
 
 namespace textonbench::bootstrap_test {
 
