@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "gpu/context.h"
@@ -37,8 +38,8 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Throws GpuError, or std::invalid_argument for a frame that is empty or farther than 2^20 pixels from the recipe's
-  /// base.
+  /// Throws GpuError, also for a uniform or sampler that the shader reads and the recipe does not set, or
+  /// std::invalid_argument for a frame that is empty or farther than 2^20 pixels from the recipe's base.
   Image draw(const Frame& frame);
 
   /// Milliseconds of the graphics processor for each of `count` frames, by timer queries, after `warm_up` others.
@@ -47,13 +48,14 @@ class Renderer {
 
  private:
   struct Resources;
-  void submit(const Frame& frame);
-  void resize(Extent size);
+  void prepare(const Frame& frame);
+  void submit(Extent size);
 
   Context& context_;
   ShaderPath path_;
   int channels_;
   Eigen::Vector2d base_;
+  std::string shader_;
   std::unique_ptr<Resources> resources_;
 };
 
