@@ -27,7 +27,7 @@ namespace textonbench {
 #define TEXTONBENCH_NEW_GL_FUNCTIONS(X) X(BindImageTexture) X(DebugMessageCallback) X(DispatchCompute) X(MemoryBarrier)
 
 struct GlFunctions {
-#define TEXTONBENCH_MEMBER(name) decltype(&gl##name) name = nullptr;
+#define TEXTONBENCH_MEMBER(name) decltype(&gl##name) name = nullptr;  // NOLINT(bugprone-macro-parentheses)
   TEXTONBENCH_GL_FUNCTIONS(TEXTONBENCH_MEMBER)
   TEXTONBENCH_NEW_GL_FUNCTIONS(TEXTONBENCH_MEMBER)
 #undef TEXTONBENCH_MEMBER
