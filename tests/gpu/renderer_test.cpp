@@ -12,7 +12,12 @@ namespace textonbench::renderer_test {
 
 using testing::HasSubstr;
 
-ShaderRecipe plane_probe() { return {.shader = "plane_probe", .channels = 8, .base = {0, 0}}; }
+ShaderRecipe plane_probe() {
+  ShaderRecipe recipe;
+  recipe.shader = "plane_probe";
+  recipe.channels = 8;
+  return recipe;
+}
 
 class RendererTest : public testing::TestWithParam<ShaderPath> {
  protected:
