@@ -102,12 +102,11 @@ void add_listed(PlanePoint point, KernelFilter kernel, uint listed, inout vec4 s
   for (uint i = 0u; i < listed; ++i) add_impact(point, kernel, listed_impact(i), sums);
 }
 
-void add_impacts(PlanePoint point, mat2 footprint, PlaneBox tile, inout vec4 sums[GROUPS]) {
-  KernelFilter kernel = kernel_filter(footprint);
-  PlaneBox box = reaching(tile, margin_of_group(kernel.margin));
-  CellRange range = cells_of(box);
+// Lists the impacts in the box of a range of cells, and adds them whenever the list may not take all of a further step.
+// Returns how many are left in it.
+uint add_cells(CellRange range, PlaneBox box, PlanePoint point, KernelFilter kernel, uint listed,
+               inout vec4 sums[GROUPS]) {
   uint all_cells = uint(range.high.x - range.low.x + 1) * uint(range.high.y - range.low.y + 1);
-  uint listed = 0u;
   for (uint first = 0u; first < all_cells; first += group_size) {
     uint cells = min(all_cells - first, group_size);
 #if PROCESS == STRATIFIED
@@ -134,6 +133,20 @@ void add_impacts(PlanePoint point, mat2 footprint, PlaneBox tile, inout vec4 sum
         listed = 0u;
       }
     }
+  }
+  return listed;
+}
+
+void add_impacts(PlanePoint point, mat2 footprint, PlaneBox tile, inout vec4 sums[GROUPS]) {
+  KernelFilter kernel = kernel_filter(footprint);
+  PlaneBox box = reaching(tile, margin_of_group(kernel.margin));
+  CellRange range = cells_of(box);
+  // So many rows that 32 bits count their cells.
+  int rows = max((1 << 24) / (range.high.x - range.low.x + 1), 1);
+  uint listed = 0u;
+  for (int top = range.low.y; top <= range.high.y; top += rows) {
+    ivec2 last = ivec2(range.high.x, min(top + rows - 1, range.high.y));
+    listed = add_cells(CellRange(ivec2(range.low.x, top), last), box, point, kernel, listed, sums);
   }
   add_listed(point, kernel, listed, sums);
   barrier();  // before the list of another sample of the same pixel

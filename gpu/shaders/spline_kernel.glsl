@@ -45,9 +45,8 @@ KernelFilter kernel_filter(mat2 footprint) {
 #if !WINDOW_KERNEL
   vec2 margin = vec2(1.5 * (exp2(ceil(kernel.level)) - 1.0));
   if (kernel.probes > 1) margin += 0.5 * abs(kernel.axis);
-  // No farther than points are from the base, nor more cells than a work group counts.
-  float limit = min(float(1 << 28), 16384.0 * float(cell_side));
-  kernel.margin = ivec2(min(ceil(margin * float(plane_unit)), limit));
+  // Points are no farther than 2^30 from the base.
+  kernel.margin = ivec2(min(ceil(margin * float(plane_unit)), 268435456.0));
 #endif
   return kernel;
 #endif

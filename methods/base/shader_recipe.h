@@ -23,8 +23,9 @@
 
 namespace textonbench {
 
-/// How texels are read. manual: by texelFetch and weights in float32, to rounding what the processor computes.
-/// hardware: by the texture unit, whose positions between texels have 8 bits.
+/// How texels are read. manual: by texelFetch and weights in float32, to rounding what the processor computes; with a
+/// filter, by the level and the probes that the shader chooses from the footprint (Mesa's llvmpipe 22.3 takes no notice
+/// of it in its own anisotropic filter). hardware: by the texture unit, whose positions between texels have 8 bits.
 enum class ShaderFetch { hardware, manual };
 
 /// How a kernel is filtered by the footprint of a pixel: not at all, by the nearest level of its mip chain, or by the

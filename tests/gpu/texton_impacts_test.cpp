@@ -31,7 +31,7 @@ class TextonImpacts : public testing::TestWithParam<ContextKind> {
   /// What impact number `impact` is in the cells around a place.
   Image draw(ShaderRecipe recipe, double side, int impact) {
     recipe.uniforms.back().second = std::int32_t{impact};
-    const double half = cells_aside / 2 * side;
+    const double half = 0.5 * cells_aside * side;
     const Frame frame{
         .size = {cells_aside, cells_aside}, .origin = recipe.base - Eigen::Vector2d(half, half), .step = side};
     return Renderer(*context_, recipe, ShaderPath::fragment).draw(frame);
@@ -63,9 +63,10 @@ TEST_P(TextonImpacts, AreThoseOfTheProcessorBitForBit) {
       }
       for (std::size_t i = 0; i < most; ++i) {
         const Image image = draw(recipe, grid.side(), static_cast<int>(i));
+        auto next_cell = cells.cbegin();
         for (int y = 0; y < cells_aside; ++y) {
           for (int x = 0; x < cells_aside; ++x) {
-            const std::vector<CellImpact>& cell = cells[static_cast<std::size_t>(y * cells_aside + x)];
+            const std::vector<CellImpact>& cell = *next_cell++;
             ASSERT_EQ(image.at(0, x, y), static_cast<float>(cell.size())) << x << " " << y;
             if (i >= cell.size()) continue;
             ASSERT_EQ(image.at(1, x, y), static_cast<float>(cell[i].x)) << x << " " << y;

@@ -65,13 +65,12 @@ TEST(SplineShader, MipLevelsAreThoseOfTheMipChain) {
     for (int l = 0; l <= chain.coarsest(); ++l) {
       const int side = 16 >> l;
       const Extent kept = chain.extent(l);
+      const std::vector<float>& texels = texture.levels[static_cast<std::size_t>(l)];
+      auto next = texels.cbegin() + std::ptrdiff_t{4} * k * side * side;
       for (int y = 0; y < side; ++y) {
         for (int x = 0; x < side; ++x) {
           const Texel expected = x < kept.width && y < kept.height ? chain.texel(l, x, y) : Texel::Zero();
-          for (int c = 0; c < 4; ++c) {
-            const auto i = static_cast<std::size_t>(((k * side + y) * side + x) * 4 + c);
-            EXPECT_NEAR(texture.levels[static_cast<std::size_t>(l)][i], scale * static_cast<double>(expected[c]), 1e-6);
-          }
+          for (int c = 0; c < 4; ++c) EXPECT_NEAR(*next++, scale * static_cast<double>(expected[c]), 1e-6);
         }
       }
     }
