@@ -1,0 +1,59 @@
+// What the pixels of a frame show.
+#include "plane.glsl"
+
+uniform ivec2 frame_size;
+uniform int supersampling;  // n: n x n samples a pixel
+
+// A raster: sample i along an axis, of all samples of the frame, is at origin + i step, whole numbers of 2^−10 pixel and
+// 32 bits below.
+uniform ivec2 origin_coarse;
+uniform uvec2 origin_fraction;
+uniform int step_coarse;
+uniform uint step_fraction;
+uniform float step_pixels;
+
+// The ground under a camera that stands above the origin (methods/base/ground_view.h).
+uniform bool is_ground;
+uniform vec4 camera;     // height, focal length in pixels, sine and cosine of the pitch
+uniform float furthest;  // longest footprint that is shown, pixels
+
+struct View {
+  bool covered;
+  PlanePoint point;
+  mat2 footprint;
+};
+
+ivec2 raster_coordinate(int i, int coarse, uint fraction) {
+  uint carry, product_high, product_low;
+  umulExtended(uint(i), step_fraction, product_high, product_low);
+  uint low = uaddCarry(product_low, fraction, carry);
+  return ivec2(coarse + i * step_coarse + int(product_high + carry), int(low >> 20));
+}
+
+View raster_view(ivec2 i) {
+  ivec2 x = raster_coordinate(i.x, origin_coarse.x, origin_fraction.x);
+  ivec2 y = raster_coordinate(i.y, origin_coarse.y, origin_fraction.y);
+  return View(true, PlanePoint(ivec2(x.x, y.x), ivec2(x.y, y.y)), mat2(step_pixels));
+}
+
+View ground_view(vec2 pixel, float side) {
+  vec2 offset = pixel - 0.5 * (vec2(frame_size) - 1.0);
+  float depth = camera.y * camera.z + offset.y * camera.w;
+  float scale = camera.x / max(depth, 1.0);
+  vec2 right = vec2(scale, 0.0);
+  vec2 down = scale / max(depth, 1.0) * vec2(-offset.x * camera.w, camera.y);
+  vec2 position = scale * vec2(offset.x, offset.y * camera.z - camera.y * camera.w) * 1024.0;
+  vec2 whole = floor(position);
+  // The fractions of both terms carry into the whole.
+  ivec2 fine = ivec2(origin_fraction >> 20) + ivec2((position - whole) * 4096.0);
+  PlanePoint point = PlanePoint(origin_coarse + ivec2(whole) + (fine >> 12), fine & 4095);
+  bool covered = depth >= 1.0 && length(right) <= furthest && length(down) <= furthest;
+  return View(covered, point, mat2(right * side, down * side));
+}
+
+// Sample (i, j) of a pixel.
+View view_of(ivec2 pixel, ivec2 sample_index) {
+  if (!is_ground) return raster_view(pixel * supersampling + sample_index);
+  float side = 1.0 / float(supersampling);
+  return ground_view(vec2(pixel) + (vec2(sample_index) + 0.5) * side - 0.5, side);
+}

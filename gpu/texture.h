@@ -1,0 +1,53 @@
+// Textures that a shader reads, and those that a frame is drawn to.
+#pragma once
+
+#include <vector>
+
+#include "gpu/context.h"
+#include "methods/base/image.h"
+#include "methods/base/shader_recipe.h"
+
+namespace textonbench {
+
+class Texture {
+ public:
+  /// Throws GpuError for a size beyond the driver's limits and std::invalid_argument for texels that do not fit it.
+  Texture(Context& context, const ShaderTexture& texture);
+  Texture(Context& context, const ShaderWords& words);
+  Texture(Texture&& other) noexcept;
+  Texture& operator=(Texture&&) = delete;
+  ~Texture();
+
+  void bind(GLuint unit) const;
+
+ private:
+  Context* context_;
+  GLenum target_;
+  GLuint name_ = 0;
+  GLuint buffer_ = 0;
+};
+
+/// Float32 pixels, four channels a texture.
+class FrameTarget {
+ public:
+  FrameTarget(Context& context, int groups) : context_(context), textures_(static_cast<std::size_t>(groups)) {}
+  ~FrameTarget();
+  FrameTarget(const FrameTarget&) = delete;
+  FrameTarget& operator=(const FrameTarget&) = delete;
+
+  /// Throws GpuError for a size beyond the driver's limits.
+  void resize(Extent size);
+  void bind(bool as_images) const;
+  Image read(int channels) const;
+
+ private:
+  void release();
+
+  Context& context_;
+  Extent size_{0, 0};
+  std::vector<GLuint> textures_;
+  GLuint framebuffer_ = 0;
+  GLuint vertices_ = 0;
+};
+
+}  // namespace textonbench

@@ -1,0 +1,172 @@
+#include "gpu/renderer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "gpu/shader_source.h"
+
+namespace textonbench::renderer_test {
+
+using testing::HasSubstr;
+
+ShaderRecipe plane_probe() {
+  ShaderRecipe recipe;
+  recipe.shader = "plane_probe";
+  recipe.channels = 8;
+  return recipe;
+}
+
+class RendererTest : public testing::TestWithParam<ShaderPath> {
+ protected:
+  void SetUp() override {
+    try {
+      context_ = make_context();
+    } catch (const GpuError& error) {
+      GTEST_SKIP() << error.what();
+    }
+    if (GetParam() == ShaderPath::compute && !context_->info().compute()) GTEST_SKIP() << "no compute shaders";
+  }
+  Image draw(const Frame& frame, const ShaderRecipe& recipe) {
+    return Renderer(*context_, recipe, GetParam()).draw(frame);
+  }
+
+  std::unique_ptr<Context> context_;
+};
+
+/// What the processor makes of a point: 2^−22 pixel, rounded down.
+double fixed(double pixels) { return std::floor(pixels * 0x1p22); }
+
+TEST_P(RendererTest, RasterIsExactInFixedPoint) {
+  ShaderRecipe recipe = plane_probe();
+  recipe.base = {-3.5, 0x1p33};
+  for (const double step : {1.0, 0.25, 0.37, 3.0}) {
+    SCOPED_TRACE(step);
+    const Frame frame{.size = {37, 21}, .origin = {-20.125, 0x1p33 - 7.3}, .step = step};
+    const Image image = draw(frame, recipe);
+    for (int y = 0; y < 21; ++y) {
+      for (int x = 0; x < 37; ++x) {
+        const double px = fixed(frame.origin.x() + step * x - recipe.base.x());
+        const double py = fixed(frame.origin.y() + step * y - recipe.base.y());
+        // Steps that are no multiples of 2^−42 may round otherwise than in floating point.
+        const double tolerance = step == 0.37 ? 1 : 0;
+        ASSERT_NEAR(image.at(0, x, y) * 4096.0 + image.at(2, x, y), px, tolerance) << x << ", " << y;
+        ASSERT_NEAR(image.at(1, x, y) * 4096.0 + image.at(3, x, y), py, 4096 * 0x1p-7 + tolerance) << x << ", " << y;
+        ASSERT_FLOAT_EQ(image.at(4, x, y), static_cast<float>(step));
+        ASSERT_EQ(image.at(5, x, y), 0);
+      }
+    }
+  }
+}
+
+TEST_P(RendererTest, SamplesAverageAroundThePixel) {
+  const Frame frame{.size = {5, 4}, .origin = {2, 3}, .step = 2, .supersampling = 4};
+  const Image image = draw(frame, plane_probe());
+  // The mean of coarse and fine coordinates is that of the points.
+  EXPECT_NEAR(image.at(0, 1, 2) / 1024 + image.at(2, 1, 2) * 0x1p-22, 2 + 2 * 1, 1e-5);
+  EXPECT_NEAR(image.at(1, 1, 2) / 1024 + image.at(3, 1, 2) * 0x1p-22, 3 + 2 * 2, 1e-5);
+  EXPECT_FLOAT_EQ(image.at(4, 1, 2), 0.5F);
+}
+
+TEST_P(RendererTest, GroundIsThatOfTheProcessor) {
+  Frame frame{.size = {64, 48}, .origin = {10.5, -3.25}, .ground = GroundViewOptions{.height = 30, .pitch = 0.3}};
+  const Image image = draw(frame, plane_probe());
+  const GroundView view(frame.size, *frame.ground);
+  int covered = 0;
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      if (!view.covers(x, y)) {
+        ASSERT_EQ(image.at(4, x, y), 0) << x << ", " << y;
+        continue;
+      }
+      ++covered;
+      const Eigen::Vector2d point = frame.origin + view.point(x, y);
+      const Eigen::Matrix2d footprint = view.footprint(x, y);
+      const double tolerance = 1e-6 * point.norm() + 1e-5;
+      ASSERT_GE(image.at(2, x, y), 0);
+      ASSERT_NEAR(image.at(0, x, y) / 1024 + image.at(2, x, y) * 0x1p-22, point.x(), tolerance) << x << ", " << y;
+      ASSERT_NEAR(image.at(1, x, y) / 1024 + image.at(3, x, y) * 0x1p-22, point.y(), tolerance) << x << ", " << y;
+      ASSERT_NEAR(image.at(4, x, y), footprint(0, 0), 1e-5 * footprint(0, 0));
+      ASSERT_NEAR(image.at(6, x, y), footprint(0, 1), 1e-5 * footprint(1, 1));
+      ASSERT_NEAR(image.at(7, x, y), footprint(1, 1), 1e-5 * footprint(1, 1));
+    }
+  }
+  EXPECT_GT(covered, 1000);
+  EXPECT_LT(covered, 64 * 48);
+}
+
+TEST_P(RendererTest, FramesOfOtherSizesFollowEachOther) {
+  Renderer renderer(*context_, plane_probe(), GetParam());
+  EXPECT_EQ(renderer.draw({.size = {17, 5}}).extent(), (Extent{17, 5}));
+  const Image larger = renderer.draw({.size = {40, 33}});
+  EXPECT_EQ(larger.at(0, 39, 32), 39 * 1024);
+  EXPECT_EQ(larger.at(1, 39, 32), 32 * 1024);
+}
+
+TEST_P(RendererTest, TimesAreOfEachFrame) {
+  const std::vector<double> times = Renderer(*context_, plane_probe(), GetParam()).time({.size = {64, 64}}, 2, 5);
+  ASSERT_EQ(times.size(), 5U);
+  for (const double t : times) {
+    EXPECT_GT(t, 0);
+    EXPECT_LT(t, 1e4);
+  }
+}
+
+TEST_P(RendererTest, ALogNamesTheFileAndItsLine) {
+  ShaderRecipe recipe = plane_probe();
+  recipe.defines = {{"is_inside", "1 +"}};
+  try {
+    draw({.size = {8, 8}}, recipe);
+    FAIL() << "compiled";
+  } catch (const GpuError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("does not compile"));
+    EXPECT_THAT(error.what(), HasSubstr("plane_probe.glsl:8"));
+  }
+}
+
+TEST_P(RendererTest, UnusableRecipesAndFramesAreRefusedWithTheReason) {
+  const auto message = [this](const Frame& frame, const ShaderRecipe& recipe) -> std::string {
+    try {
+      draw(frame, recipe);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "drawn";
+  };
+  const Frame frame{.size = {8, 8}};
+  ShaderRecipe recipe = plane_probe();
+  recipe.channels = 9;
+  EXPECT_THAT(message(frame, recipe), HasSubstr("1 to 8"));
+  recipe = plane_probe();
+  recipe.shader = "no_such";
+  EXPECT_THAT(message(frame, recipe), HasSubstr("no_such.glsl"));
+  EXPECT_THAT(message({.size = {0, 8}}, plane_probe()), HasSubstr("0x8"));
+  EXPECT_THAT(message({.size = {1 << 20, 8}}, plane_probe()), HasSubstr("at most"));
+  EXPECT_THAT(message({.size = {8, 8}, .origin = {0x1p21, 0}}, plane_probe()), HasSubstr("2^20"));
+  EXPECT_THAT(message({.size = {8, 8}, .step = 0}, plane_probe()), HasSubstr("step 0"));
+  recipe = plane_probe();
+  recipe.textures.push_back({.sampler = "big", .size = {1 << 20, 1}, .levels = {{}}});
+  EXPECT_THAT(message(frame, recipe), HasSubstr("1048576x1"));
+  // Errors leave the context usable.
+  EXPECT_EQ(message(frame, plane_probe()), "drawn");
+}
+
+INSTANTIATE_TEST_SUITE_P(Paths, RendererTest, testing::Values(ShaderPath::fragment, ShaderPath::compute),
+                         [](const auto& path) { return path.param == ShaderPath::compute ? "compute" : "fragment"; });
+
+TEST(ShaderSourceTest, LogsOfBothKindsOfDriversGetTheFilesNames) {
+  const ShaderSource source{"", {"compute.glsl", "frame.glsl"}};
+  EXPECT_EQ(source.readable("0:12(5): error: `x' undeclared\n1(7) : error C0000: syntax error"),
+            "compute.glsl:12(5): error: `x' undeclared\nframe.glsl:7 : error C0000: syntax error");
+}
+
+TEST(ShaderSourceTest, EveryFileIsIncludedOnce) {
+  const ShaderSource source = shader_source("430 core", "compute.glsl", plane_probe());
+  EXPECT_THAT(source.files, testing::ElementsAre("compute.glsl", "frame.glsl", "plane.glsl", "plane_probe.glsl"));
+  EXPECT_THAT(source.text, HasSubstr("#define CHANNELS 8"));
+  EXPECT_EQ(source.text.find("#include"), std::string::npos);
+}
+
+}  // namespace textonbench::renderer_test
