@@ -14,6 +14,7 @@
 #include "methods/base/image.h"
 #include "methods/base/params.h"
 #include "methods/base/random.h"
+#include "methods/base/shader_recipe.h"
 #include "methods/base/texton.h"
 
 namespace textonbench {
@@ -95,6 +96,9 @@ class Model {
   virtual const SplineTexton* spline_texton() const { return nullptr; }
   /// A slow model whose sample of a seed this one's sample of that seed approximates.
   virtual std::unique_ptr<Model> reference() const { return nullptr; }
+  /// How a graphics processor evaluates the model, when it can. Throws std::invalid_argument with a reason for a
+  /// request that it cannot serve.
+  virtual std::optional<ShaderRecipe> shader(const ShaderRequest& /*request*/) const { return std::nullopt; }
   /// Of a model that an iteration fitted.
   virtual const Convergence* convergence() const { return nullptr; }
   virtual Footprint footprint(const Domain& domain) const = 0;

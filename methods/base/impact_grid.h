@@ -81,6 +81,10 @@ class ImpactGrid {
   ImpactProcess process() const { return process_; }
   /// Side of a cell, pixels.
   double side() const { return static_cast<double>(side_) / side_unit; }
+  /// The same in 1/1024 pixel.
+  std::int64_t coarse_side() const { return side_; }
+  /// poisson_thresholds() of the mean of a cell; none in the processes that need none.
+  const std::vector<std::uint32_t>& thresholds() const { return thresholds_; }
   /// Impacts a pixel: as asked for, or 1 / side² of stratified cells after rounding.
   double intensity() const { return intensity_; }
   /// Expected sum of weights a pixel.

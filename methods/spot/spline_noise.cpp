@@ -14,6 +14,8 @@
 #include "methods/spot/spline_place.h"
 #include "methods/spot/spline_points.h"
 #include "methods/spot/spline_raster.h"
+#include "methods/spot/spline_scale.h"
+#include "methods/spot/spline_shader.h"
 #include "methods/spot/spline_spectrum.h"
 
 namespace textonbench {
@@ -69,17 +71,10 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
       : texton_(std::move(texton)),
         options_(options),
         grid_(spline_noise_impacts(texton_, options)),
-        scale_(std::sqrt((options.kernel_at ? 1.0 : static_cast<double>(texton_.coefficients.kernels.size())) /
-                         grid_.intensity())),
+        scale_(spline_noise_scale(texton_, options, grid_)),
         points_(texton_, scale_),
-        framed_(frame_coefficients(texton_, scale_, grid_.mean_weight() == 0)) {
-    start_.reserve(texton_.coefficients.mean.size());
-    const auto kernels = static_cast<double>(texton_.coefficients.kernels.size());
-    for (int c = 0; c < channels(); ++c) {
-      const double expected = scale_ * grid_.mean_weight() / kernels * integral(c);
-      start_.push_back(static_cast<float>(texton_.coefficients.mean[static_cast<std::size_t>(c)] - expected));
-    }
-  }
+        framed_(frame_coefficients(texton_, scale_, grid_.mean_weight() == 0)),
+        start_(spline_noise_start(texton_, scale_, grid_)) {}
 
   Image synthesize(const Domain& domain, Seed seed) const override {
     if (const auto reason = refuse_spline_noise(domain)) {
@@ -124,6 +119,9 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
   const Gaussian* gaussian() const override { return options_.kernel_at ? nullptr : this; }
   const Procedural* procedural() const override { return this; }
   const SplineTexton* spline_texton() const override { return &texton_; }
+  std::optional<ShaderRecipe> shader(const ShaderRequest& request) const override {
+    return spline_noise_recipe(texton_, options_, request);
+  }
   std::vector<double> mean() const override { return texton_.coefficients.mean; }
   CrossSpectrum spectrum(Extent grid) const override { return spline_spectrum(texton_, grid); }
 
@@ -137,19 +135,6 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
 
  private:
   int channels() const { return texton_.coefficients.channels(); }
-
-  /// Σ_k ∫ h_k = Σ_k Σ_j α_k(j).
-  double integral(int channel) const {
-    double sum = 0;
-    for (const Image& kernel : texton_.coefficients.kernels) {
-      for (int y = 0; y < kernel.height(); ++y) {
-        for (const float v : kernel.row(channel, y)) {
-          sum += v;
-        }
-      }
-    }
-    return sum;
-  }
 
   static void require_points(std::span<const Point2> points, std::span<const float> out, int planes) {
     if (out.size() != points.size() * static_cast<std::size_t>(planes)) {

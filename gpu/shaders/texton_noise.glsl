@@ -1,0 +1,33 @@
+// Texton noise: start + Σ_i ε_i h_{k_i}(y − x_i) over the impacts x_i of the plane, of kernels that are scaled already
+// (methods/spot/spline_noise.h).
+#include "plane.glsl"
+#include "impact_grid.glsl"
+#include "spline_kernel.glsl"
+
+uniform float start[CHANNELS];
+
+#ifdef COMPUTE
+#include "impact_tile.glsl"
+#else
+void add_impacts(PlanePoint point, mat2 footprint, PlaneBox tile, inout vec4 sums[GROUPS]) {
+  ivec2 margin = kernel_margin(footprint);
+  CellRange range = cells_of(reaching(tile, margin));
+  for (int y = range.low.y; y <= range.high.y; ++y) {
+    for (int x = range.low.x; x <= range.high.x; ++x) {
+      ivec2 cell = ivec2(x, y);
+      CellWords open = open_cell(cell);
+      uint count = impact_count(open);
+      for (uint i = 0u; i < count; ++i) {
+        add_impact(point, footprint, margin, impact_on_plane(cell, next_impact(open, i)), sums);
+      }
+    }
+  }
+}
+#endif
+
+void texture_at(PlanePoint point, mat2 footprint, PlaneBox tile, out float values[CHANNELS]) {
+  vec4 sums[GROUPS];
+  for (int g = 0; g < GROUPS; ++g) sums[g] = vec4(0.0);
+  add_impacts(point, footprint, tile, sums);
+  for (int c = 0; c < CHANNELS; ++c) values[c] = start[c] + sums[c / 4][c % 4];
+}

@@ -1,0 +1,24 @@
+// Texton noise on a graphics processor: the recipe of gpu/shaders/texton_noise.glsl, whose impacts are those of
+// SplineNoise bit for bit.
+#pragma once
+
+#include "methods/base/shader_recipe.h"
+#include "methods/base/texton.h"
+#include "methods/spot/spline_noise.h"
+
+namespace textonbench {
+
+/// The texture "texton" holds the coefficients times sqrt(K/λ), kernel by kernel and four channels a layer. With a
+/// filter they are padded with zeros to a square whose side is a power of two, and the mip levels are their averages
+/// over squares of 2^l from the first coefficient on: those of MipChain (texton_filter.h).
+///
+/// Its base is a corner of the cell that holds request.near, and useful_fetches count one of a filter as one.
+///
+/// Throws std::invalid_argument, besides where make_spline_noise does, for kernels chosen by place, more than 8
+/// channels, hardware fetches of orders 2, 4 and 5, a filter of another order than 1 or with manual fetches, a place
+/// beyond 2^40 pixels from the origin, cells of more than 2^18 pixels, and kernels of more than 2^16 pixels or 2^13
+/// cells a side.
+ShaderRecipe spline_noise_recipe(const SplineTexton& texton, const SplineNoiseOptions& options,
+                                 const ShaderRequest& request);
+
+}  // namespace textonbench
