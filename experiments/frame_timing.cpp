@@ -1,6 +1,7 @@
 #include "experiments/frame_timing.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -32,26 +33,43 @@ double covered_samples(const Frame& frame) {
   return samples * covered;
 }
 
+/// Milliseconds of `count` frames after `warm_up` others. In software by the clock, frame by frame: timer queries of
+/// llvmpipe count what they wait for, and leave dispatches out.
+std::vector<double> time_turn(Renderer& renderer, const Frame& frame, bool software, int warm_up, int count) {
+  if (!software) return renderer.time(frame, warm_up, count);
+  if (warm_up > 0) renderer.time(frame, warm_up - 1, 1);
+  std::vector<double> times;
+  times.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    renderer.time(frame, 0, 1);
+    times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+  }
+  return times;
+}
+
 std::vector<double> time_recipe(Context& context, const ShaderRecipe& recipe, const FrameTimingOptions& options,
                                 double share) {
+  const bool software = context.info().software;
   Renderer renderer(context, recipe, options.path);
-  const double first = renderer.time(options.frame, 0, 1).front();
+  // The first frame compiles.
+  const double typical = std::max(1e-3, time_turn(renderer, options.frame, software, 1, 1).front());
   int frames = options.frames > 0 ? options.frames : usual_frames;
   int warm_up = usual_warm_up;
-  if (context.info().software) {
-    const double fit = 1e3 * share * options.software_seconds / std::max(first, 1e-3);
-    if (options.frames == 0) frames = std::clamp(static_cast<int>(std::min(fit, 1e6)), least_software_frames, frames);
+  if (software) {
+    const double fit = 1e3 * share * options.software_seconds / typical;
+    if (options.frames == 0) frames = static_cast<int>(std::clamp<double>(fit, least_software_frames, frames));
     warm_up = std::min(warm_up, frames / 10);
   }
-  // Frames between two reports of progress, a fifth of a second.
-  const int turn = std::max(1, static_cast<int>(std::min(200 / std::max(first, 1e-3), 1e6)));
+  // Between two reports of progress: a fifth of a second.
+  const int turn = static_cast<int>(std::clamp<double>(200 / typical, 1, frames));
   Progress progress(static_cast<std::size_t>(frames), "frames of " + recipe.shader, options.show_progress, {});
   std::vector<double> times;
   times.reserve(static_cast<std::size_t>(frames));
   for (int left = frames; left > 0;) {
     const int count = std::min(left, turn);
-    for (const double milliseconds : renderer.time(options.frame, left == frames ? warm_up : 0, count)) {
-      times.push_back(milliseconds);
+    for (const double t : time_turn(renderer, options.frame, software, left == frames ? warm_up : 0, count)) {
+      times.push_back(t);
       progress.advance("");
     }
     left -= count;

@@ -38,8 +38,9 @@ struct FrameTiming {
 
 FrameTimes frame_times(std::vector<double> milliseconds);
 
-/// Draws the frame again and again by timer queries. Throws as Renderer does, and std::invalid_argument for a recipe
-/// without a texture or a frame without a pixel that shows the plane.
+/// Draws the frame again and again, timed by queries of the graphics processor, or of software by the clock. Throws as
+/// Renderer does, and std::invalid_argument for a recipe without a texture or a frame without a pixel that shows the
+/// plane.
 FrameTiming time_frames(Context& context, const ShaderRecipe& recipe, const FrameTimingOptions& options);
 
 /// Keys: path, frames, ms {median, min, p05, p95}, frames_per_second, ns_per_pixel, fetches_per_pixel,

@@ -11,7 +11,7 @@
 namespace textonbench {
 
 std::vector<std::string> methods_with_shader() {
-  constexpr Extent size{16, 16};
+  constexpr Extent size{64, 64};  // beyond the usual supports
   Exemplar exemplar{.name = "noise", .pixels = Image(size, 1), .sha256 = ""};
   for (int y = 0; y < size.height; ++y) {
     fill_normal(Stream(Seed{1}), static_cast<std::uint64_t>(y), 0, exemplar.pixels.row(0, y));
@@ -36,11 +36,10 @@ ShaderRecipe shader_of(const Model& model, std::string_view method, const Shader
   std::optional<ShaderRecipe> recipe = model.shader(request);
   if (recipe) return *std::move(recipe);
   const std::vector<std::string> drawn = methods_with_shader();
-  if (std::ranges::find(drawn, method) != drawn.end()) {
-    throw std::invalid_argument(fmt::format("{} with these options has no shader: take --renderer cpu", method));
-  }
-  throw std::invalid_argument(fmt::format("{} has no shader: expected one of {}, or --renderer cpu", method,
-                                          drawn.empty() ? "no method" : fmt::format("{}", fmt::join(drawn, ", "))));
+  throw std::invalid_argument(fmt::format(
+      "{} {} for a graphics processor: expected one of {}", method,
+      std::ranges::find(drawn, method) == drawn.end() ? "has no shader" : "with these options has no shader",
+      fmt::join(drawn, ", ")));
 }
 
 }  // namespace textonbench

@@ -15,7 +15,7 @@ namespace textonbench {
 ShaderRecipe shader_of(const Model& model, std::string_view method, const ShaderRequest& request);
 
 /// Names of the methods whose models, with the usual options, a graphics processor draws. They are fitted to an
-/// exemplar of a few pixels to know.
+/// small exemplar to know.
 std::vector<std::string> methods_with_shader();
 
 }  // namespace textonbench

@@ -22,7 +22,7 @@ uint scrambled(uint x) {
 void texture_at(PlanePoint point, mat2 footprint, PlaneBox tile, out float values[CHANNELS]) {
   vec4 sum = vec4(0.0);
 #if COHERENT
-  vec2 start = vec2(point.coarse) / (float(plane_unit) * vec2(TEXELS_X, TEXELS_Y));
+  vec2 start = (vec2(point.coarse) / float(plane_unit) + 0.5) / vec2(TEXELS_X, TEXELS_Y);
 #else
   uint state = scrambled(uint(point.coarse.x) + scrambled(uint(point.coarse.y)));
 #endif
