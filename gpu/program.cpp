@@ -18,7 +18,8 @@ std::string shader_log(const GlFunctions& gl, GLuint shader) {
   gl.GetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
   std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
   gl.GetShaderInfoLog(shader, length, nullptr, log.data());
-  return log.c_str();
+  log.pop_back();  // the closing zero
+  return log;
 }
 
 std::string program_log(const GlFunctions& gl, GLuint program) {
@@ -26,7 +27,8 @@ std::string program_log(const GlFunctions& gl, GLuint program) {
   gl.GetProgramiv(program, GL_INFO_LOG_LENGTH, &length);
   std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
   gl.GetProgramInfoLog(program, length, nullptr, log.data());
-  return log.c_str();
+  log.pop_back();  // the closing zero
+  return log;
 }
 
 void compile(const GlFunctions& gl, GLuint program, const ShaderStage& stage) {

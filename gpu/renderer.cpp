@@ -88,7 +88,13 @@ Renderer::Renderer(Context& context, const ShaderRecipe& recipe, ShaderPath path
   context.check("uploading the recipe of " + recipe.shader);
 }
 
-Renderer::~Renderer() { context_.make_current(); }
+Renderer::~Renderer() {
+  try {
+    context_.make_current();
+  } catch (const GpuError&) {
+    // A context that is gone has taken its objects along.
+  }
+}
 
 void Renderer::prepare(const Frame& frame) {
   if (frame.size.width < 1 || frame.size.height < 1 || frame.supersampling < 1 || frame.supersampling > 64) {

@@ -1,0 +1,71 @@
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include "gpu/context_kinds.h"
+
+namespace textonbench {
+namespace {
+
+class GlfwContext final : public Context {
+ public:
+  GlfwContext()
+      : Context(ContextKind::glfw),
+        library_({"libglfw.so.3"}, "libglfw3"),
+        make_current_(library_.function<decltype(glfwMakeContextCurrent)>("glfwMakeContextCurrent")),
+        destroy_window_(library_.function<decltype(glfwDestroyWindow)>("glfwDestroyWindow")),
+        terminate_(library_.function<decltype(glfwTerminate)>("glfwTerminate")) {
+    if (library_.function<decltype(glfwInit)>("glfwInit")() == GLFW_FALSE) {
+      throw GpuError(fmt::format("GLFW finds no display: {}; --context egl and --context osmesa need none", reason()));
+    }
+    const auto hint = library_.function<decltype(glfwWindowHint)>("glfwWindowHint");
+    hint(GLFW_VISIBLE, GLFW_FALSE);
+    hint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+    hint(GLFW_CONTEXT_VERSION_MINOR, 1);
+    hint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    hint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
+    window_ =
+        library_.function<decltype(glfwCreateWindow)>("glfwCreateWindow")(16, 16, "textonbench", nullptr, nullptr);
+    if (window_ == nullptr) {
+      const std::string why = reason();
+      terminate_();
+      throw GpuError(fmt::format("GLFW makes no window with OpenGL 4.1: {}", why));
+    }
+    try {
+      make_current();
+      const auto address = library_.function<decltype(glfwGetProcAddress)>("glfwGetProcAddress");
+      load([address](const char* name) { return reinterpret_cast<void*>(address(name)); });
+    } catch (...) {
+      close();
+      throw;
+    }
+  }
+  GlfwContext(const GlfwContext&) = delete;
+  GlfwContext& operator=(const GlfwContext&) = delete;
+  ~GlfwContext() override { close(); }
+
+  void make_current() override { make_current_(window_); }
+
+ private:
+  std::string reason() const {
+    const char* text = nullptr;
+    library_.function<decltype(glfwGetError)>("glfwGetError")(&text);
+    return text == nullptr ? "no reason given" : text;
+  }
+  void close() {
+    destroy_window_(window_);
+    terminate_();
+  }
+
+  Library library_;
+  decltype(glfwMakeContextCurrent)* make_current_;
+  decltype(glfwDestroyWindow)* destroy_window_;
+  decltype(glfwTerminate)* terminate_;
+  GLFWwindow* window_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<Context> make_glfw_context() { return std::make_unique<GlfwContext>(); }
+
+}  // namespace textonbench
