@@ -24,7 +24,7 @@ struct Frame {
   Extent size;
   Eigen::Vector2d origin{0, 0};
   double step = 1;
-  std::optional<GroundViewOptions> ground;
+  std::optional<GroundViewOptions> ground{};
   int supersampling = 1;  ///< n: the mean of n x n points a pixel
 };
 

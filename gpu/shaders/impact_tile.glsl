@@ -98,13 +98,13 @@ PlaneImpact listed_impact(uint i) {
   return PlaneImpact(place, impact.w, impact.z >> 24 != 0 ? -1.0 : 1.0);
 }
 
-void add_listed(PlanePoint point, mat2 footprint, ivec2 margin, uint listed, inout vec4 sums[GROUPS]) {
-  for (uint i = 0u; i < listed; ++i) add_impact(point, footprint, margin, listed_impact(i), sums);
+void add_listed(PlanePoint point, KernelFilter kernel, uint listed, inout vec4 sums[GROUPS]) {
+  for (uint i = 0u; i < listed; ++i) add_impact(point, kernel, listed_impact(i), sums);
 }
 
 void add_impacts(PlanePoint point, mat2 footprint, PlaneBox tile, inout vec4 sums[GROUPS]) {
-  ivec2 margin = kernel_margin(footprint);
-  PlaneBox box = reaching(tile, margin_of_group(margin));
+  KernelFilter kernel = kernel_filter(footprint);
+  PlaneBox box = reaching(tile, margin_of_group(kernel.margin));
   CellRange range = cells_of(box);
   uint all_cells = uint(range.high.x - range.low.x + 1) * uint(range.high.y - range.low.y + 1);
   uint listed = 0u;
@@ -130,11 +130,11 @@ void add_impacts(PlanePoint point, mat2 footprint, PlaneBox tile, inout vec4 sum
       }
       listed = append_impacts(is_kept, impact, listed);
       if (listed > list_size - group_size) {
-        add_listed(point, footprint, margin, listed, sums);
+        add_listed(point, kernel, listed, sums);
         listed = 0u;
       }
     }
   }
-  add_listed(point, footprint, margin, listed, sums);
+  add_listed(point, kernel, listed, sums);
   barrier();  // before the list of another sample of the same pixel
 }

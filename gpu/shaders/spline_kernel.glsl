@@ -1,8 +1,9 @@
 // Kernels h_k(y) = Σ_j α_k(j) β^n(y1 − j1) β^n(y2 − j2) of ORDER n, WIDTH x HEIGHT coefficients, as layers of a texture
 // array of TEXELS_X x TEXELS_Y texels that hold four channels each: layer GROUPS k + g has the channels from 4 g on.
 //
-// FILTER: 0 none, or what the sampler does with the footprint of a pixel: 1 mipmap, 2 trilinear, 3 anisotropic, as in
-// methods/spot/texton_filter.h. MANUAL_FETCH reads single texels.
+// FILTER of the kernels by the footprint of a pixel: 0 none, 1 nearest mip level, 2 trilinear, 3 anisotropic, as
+// KernelFilter of methods/spot/texton_filter.h. MANUAL_FETCH reads single texels; with a filter, it chooses levels and
+// probes here and leaves only the reading between texels and levels to the sampler.
 #define GROUPS ((CHANNELS + 3) / 4)
 
 uniform sampler2DArray texton;
@@ -14,28 +15,41 @@ const ivec2 coefficients = ivec2(WIDTH, HEIGHT);
 const int tap_offset = (ORDER - ORDER / 2) * plane_unit + (ORDER % 2 == 0 ? plane_unit / 2 : 0);
 const ivec2 reach = (coefficients + ORDER) * plane_unit;
 
-// By how much the filtered kernel is wider than the kernel on each side, or the part of it that is shown.
-ivec2 kernel_margin(mat2 footprint) {
-#if FILTER == 0 || WINDOW_KERNEL
-  return ivec2(0);
+// How kernels are read under a footprint: by `probes` along its longer column `axis`, of a level of the mip chain.
+struct KernelFilter {
+  mat2 footprint;
+  vec2 axis;
+  int probes;
+  float level;
+  ivec2 margin;  // by how much the filtered kernel, or the part of it that is shown, is wider on each side
+};
+
+KernelFilter kernel_filter(mat2 footprint) {
+#if FILTER == 0
+  return KernelFilter(footprint, vec2(0.0), 1, 0.0, ivec2(0));
 #else
-  vec2 axis = footprint[0];
+  KernelFilter kernel = KernelFilter(footprint, footprint[0], 1, 0.0, ivec2(0));
+  float longer = length(footprint[0]);
   float shorter = length(footprint[1]);
-  if (length(axis) < shorter) {
-    axis = footprint[1];
+  if (longer < shorter) {
+    kernel.axis = footprint[1];
+    longer = shorter;
     shorter = length(footprint[0]);
   }
-  float probes = 1.0;
 #if FILTER == 3
-  probes = clamp(ceil(length(axis) / max(shorter, 1e-20)), 1.0, 16.0);
+  kernel.probes = int(clamp(ceil(longer / max(shorter, 1e-20)), 1.0, 16.0));
 #endif
-  // Coarsest level, at the longest, is one texel.
-  float most = max(ceil(log2(float(TEXELS_X))), 0.0);
-  float texel = exp2(clamp(ceil(log2(max(length(axis) / probes, 1.0))), 0.0, most));
-  vec2 margin = vec2(1.5 * (texel - 1.0)) + (probes > 1.0 ? 0.5 * abs(axis) : vec2(0.0));
-  // No farther than a frame is from its base, nor than the cells of a tile can be counted.
+  // The coarsest level is one texel.
+  float coarsest = round(log2(float(TEXELS_X)));
+  kernel.level = clamp(log2(max(longer / float(kernel.probes), 1.0)), 0.0, coarsest);
+#if !WINDOW_KERNEL
+  vec2 margin = vec2(1.5 * (exp2(ceil(kernel.level)) - 1.0));
+  if (kernel.probes > 1) margin += 0.5 * abs(kernel.axis);
+  // No farther than points are from the base, nor more cells than a work group counts.
   float limit = min(float(1 << 28), 16384.0 * float(cell_side));
-  return ivec2(min(ceil(margin * float(plane_unit)), limit));
+  kernel.margin = ivec2(min(ceil(margin * float(plane_unit)), limit));
+#endif
+  return kernel;
 #endif
 }
 
@@ -70,11 +84,20 @@ vec4 bilinear(vec2 at, int layer) {
   return textureLod(texton, vec3((at + 0.5) / vec2(TEXELS_X, TEXELS_Y), layer), 0.0);
 }
 
-// h at `offset` pixels from the impact: `first` is the first tap and t the position between knots.
-vec4 kernel_value(vec2 offset, ivec2 first, vec2 t, mat2 footprint, int layer) {
-#if FILTER != 0
+// h, or the filtered h, at `offset` pixels from the impact: `first` is the first tap and t the position between knots.
+vec4 kernel_value(vec2 offset, ivec2 first, vec2 t, KernelFilter kernel, int layer) {
+#if FILTER != 0 && MANUAL_FETCH
+  vec4 value = vec4(0.0);
+  for (int i = 1; i <= kernel.probes; ++i) {
+    float place = float(i) / float(kernel.probes + 1) - 0.5;
+    vec2 probe = (offset + place * kernel.axis + 0.5) / vec2(TEXELS_X, TEXELS_Y);
+    value += textureLod(texton, vec3(probe, layer), kernel.level);
+  }
+  return value / float(kernel.probes);
+#elif FILTER != 0
   vec2 texels = vec2(TEXELS_X, TEXELS_Y);
-  return textureGrad(texton, vec3((offset + 0.5) / texels, layer), footprint[0] / texels, footprint[1] / texels);
+  return textureGrad(texton, vec3((offset + 0.5) / texels, layer), kernel.footprint[0] / texels,
+                     kernel.footprint[1] / texels);
 #elif ORDER == 0
   return coefficient(first, layer);
 #elif MANUAL_FETCH
@@ -104,14 +127,14 @@ vec4 kernel_value(vec2 offset, ivec2 first, vec2 t, mat2 footprint, int layer) {
 }
 
 // Adds what an impact is at a point.
-void add_impact(PlanePoint point, mat2 footprint, ivec2 margin, PlaneImpact impact, inout vec4 sums[GROUPS]) {
+void add_impact(PlanePoint point, KernelFilter kernel, PlaneImpact impact, inout vec4 sums[GROUPS]) {
   ivec2 fine = point.fine - impact.place.fine;
   ivec2 from_first = point.coarse - impact.place.coarse + (fine >> 12) + tap_offset;
-  if (any(lessThan(from_first, -margin)) || any(greaterThanEqual(from_first, reach + margin))) return;
+  if (any(lessThan(from_first, -kernel.margin)) || any(greaterThanEqual(from_first, reach + kernel.margin))) return;
   vec2 t = vec2((from_first & (plane_unit - 1)) << 12 | (fine & 4095)) * (1.0 / 4194304.0);
   ivec2 first = (from_first >> 10) - ORDER;
   vec2 offset = plane_difference(point, impact.place);
   for (int g = 0; g < GROUPS; ++g) {
-    sums[g] += impact.weight * kernel_value(offset, first, t, footprint, impact.kernel * GROUPS + g);
+    sums[g] += impact.weight * kernel_value(offset, first, t, kernel, impact.kernel * GROUPS + g);
   }
 }

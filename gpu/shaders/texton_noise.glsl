@@ -10,15 +10,15 @@ uniform float start[CHANNELS];
 #include "impact_tile.glsl"
 #else
 void add_impacts(PlanePoint point, mat2 footprint, PlaneBox tile, inout vec4 sums[GROUPS]) {
-  ivec2 margin = kernel_margin(footprint);
-  CellRange range = cells_of(reaching(tile, margin));
+  KernelFilter kernel = kernel_filter(footprint);
+  CellRange range = cells_of(reaching(tile, kernel.margin));
   for (int y = range.low.y; y <= range.high.y; ++y) {
     for (int x = range.low.x; x <= range.high.x; ++x) {
       ivec2 cell = ivec2(x, y);
       CellWords open = open_cell(cell);
       uint count = impact_count(open);
       for (uint i = 0u; i < count; ++i) {
-        add_impact(point, footprint, margin, impact_on_plane(cell, next_impact(open, i)), sums);
+        add_impact(point, kernel, impact_on_plane(cell, next_impact(open, i)), sums);
       }
     }
   }

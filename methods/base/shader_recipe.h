@@ -37,7 +37,7 @@ enum class ShaderWindow { footprint, kernel };
 
 /// What a model is asked for.
 struct ShaderRequest {
-  Seed seed;
+  Seed seed{};
   Eigen::Vector2d near{0, 0};  ///< frames lie within 2^20 pixels of it, itself within 2^40 of the origin
   ShaderFetch fetch = ShaderFetch::hardware;
   ShaderFilter filter = ShaderFilter::none;

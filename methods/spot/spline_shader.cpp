@@ -27,10 +27,6 @@ void require_fetches(int order, const ShaderRequest& request) {
     throw std::invalid_argument(fmt::format(
         "filtered fetches of texton noise of order {}: mip levels are of bilinear kernels, expected order 1", order));
   }
-  if (is_filtered(request) && request.fetch == ShaderFetch::manual) {
-    throw std::invalid_argument(
-        "manual fetches of a filtered kernel: filters are those of the texture unit; expected hardware fetches");
-  }
   if (request.fetch == ShaderFetch::hardware && order != 0 && order != 1 && order != 3) {
     throw std::invalid_argument(fmt::format(
         "hardware fetches of texton noise of order {}: a texture unit's bilinear fetches make orders 0, 1 and 3; take "
@@ -144,7 +140,9 @@ ShaderTexture texton_texture(const Texton& coefficients, double scale, const Sha
   texture.components = layout.components;
   texture.half_float = request.half_float;
   texture.linear = true;
-  texture.filter = request.filter;
+  // Probes of the shader's own choice are trilinear ones.
+  const bool own_probes = request.fetch == ShaderFetch::manual && request.filter == ShaderFilter::anisotropic;
+  texture.filter = own_probes ? ShaderFilter::trilinear : request.filter;
   texture.levels.push_back(finest_level(coefficients, scale, layout));
   while (is_filtered(request) && layout.size.width > 1) {
     TextonLayout coarse = layout;
@@ -189,8 +187,8 @@ std::uint32_t low_word(std::uint64_t v) { return static_cast<std::uint32_t>(v); 
 std::uint32_t high_word(std::uint64_t v) { return static_cast<std::uint32_t>(v >> 32U); }
 
 /// Fetches of one impact.
-int fetches_of(int order, ShaderFetch fetch) {
-  if (fetch == ShaderFetch::manual) {
+int fetches_of(int order, const ShaderRequest& request) {
+  if (request.fetch == ShaderFetch::manual && !is_filtered(request)) {
     return (order + 1) * (order + 1);
   }
   return order == 3 ? 4 : 1;
@@ -245,7 +243,7 @@ ShaderRecipe spline_noise_recipe(const SplineTexton& texton, const SplineNoiseOp
   define("TEXELS_X", recipe.textures.front().size.width);
   define("TEXELS_Y", recipe.textures.front().size.height);
   const int groups = (coefficients.channels() + group_channels - 1) / group_channels;
-  recipe.useful_fetches = grid.intensity() * texton.support_area * fetches_of(texton.order, request.fetch) * groups;
+  recipe.useful_fetches = grid.intensity() * texton.support_area * fetches_of(texton.order, request) * groups;
   return recipe;
 }
 
