@@ -44,6 +44,7 @@ Command claims_command(CLI::App& app, const GlobalOptions& globals);
 Command compare_command(CLI::App& app, const GlobalOptions& globals);
 Command baseline_command(CLI::App& app, const GlobalOptions& globals);
 Command export_command(CLI::App& app, const GlobalOptions& globals);
+Command fps_command(CLI::App& app, const GlobalOptions& globals);
 
 int thread_count(const GlobalOptions& globals);
 /// Holds every parallel loop to the threads that were asked for, for as long as it lives.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -12,10 +13,13 @@
 #include <vector>
 
 #include "experiments/cli/command.h"
+#include "experiments/cli/fitted.h"
+#include "experiments/cli/gpu_options.h"
 #include "experiments/execute.h"
+#include "experiments/frame_timing.h"
 #include "experiments/model_file.h"
 #include "experiments/progress.h"
-#include "experiments/provenance.h"
+#include "experiments/shader_models.h"
 #include "methods/base/image_io.h"
 #include "methods/base/image_io_tiled.h"
 #include "methods/spot/spot_noise.h"
@@ -28,39 +32,12 @@ struct SynthOptions {
   ModelOptions model;
   std::filesystem::path model_file;
   std::filesystem::path output;
+  GpuOptions gpu;
+  bool on_gpu = false;
   bool json = false;
 };
 
 using Clock = std::chrono::steady_clock;
-
-struct Fitted {
-  std::unique_ptr<Model> model;
-  std::vector<ImageMap> maps;  ///< of a stack
-  Domain domain;
-  double seconds = 0;
-};
-
-Fitted fit_to_exemplar(const ModelOptions& asked, bool quiet) {
-  const MethodEntry& method = find_method(asked.method);
-  const Params params = asked.read_params(method);
-  const ExemplarCatalog catalog(home_folder());
-  std::vector<std::string> notes;
-  const Exemplar exemplar = load_exemplar(find_exemplar(catalog, asked.exemplar), &notes);
-  if (!quiet) {
-    for (const std::string& note : notes) fmt::print(stderr, "{}: {}\n", exemplar.name, note);
-  }
-  require_usable(exemplar);
-  std::optional<Exemplar> second;
-  if (const auto named = second_exemplar(method, params.values(), catalog)) second = load_exemplar(*named);
-  const Problem problem{exemplar, second ? &*second : nullptr};
-  const Domain domain = asked.read_domain(method, problem, params);
-  if (const std::optional<std::string> reason = method.refuses(problem, params, domain)) {
-    throw std::invalid_argument(fmt::format("{} cannot do this: {}", asked.method, *reason));
-  }
-  const Clock::time_point start = Clock::now();
-  std::unique_ptr<Model> model = method.analyze(problem, params, analysis_seed(asked.seed));
-  return {std::move(model), exemplar.maps, domain, std::chrono::duration<double>(Clock::now() - start).count()};
-}
 
 /// The parameters of the noise: given on the command line, or else those that the file was fitted with, or else
 /// defaults.
@@ -97,7 +74,10 @@ Fitted read_fitted(const SynthOptions& options) {
 /// Windows above this are drawn and written band by band, so that the memory they take does not grow with their height.
 constexpr std::int64_t most_pixels_at_once = std::int64_t{1} << 24;
 
-void draw_bands(const Fitted& fitted, Seed seed, const std::filesystem::path& output, bool quiet) {
+/// Draws a window of the sample.
+using Draw = std::function<Image(const Domain&)>;
+
+void draw_bands(const Draw& draw, const Fitted& fitted, const std::filesystem::path& output, bool quiet) {
   const Domain& domain = fitted.domain;
   std::optional<TiledImageWriter> writer;
   Domain window = domain;
@@ -107,7 +87,7 @@ void draw_bands(const Fitted& fitted, Seed seed, const std::filesystem::path& ou
     const int top = band * TiledImageWriter::tile;
     window.origin.y = domain.origin.y + top * domain.step;
     window.size.height = std::min(TiledImageWriter::tile, domain.size.height - top);
-    const Image image = fitted.model->synthesize(window, seed);
+    const Image image = draw(window);
     if (!writer) writer.emplace(output, domain.size, image.channels(), fitted.maps);
     writer->write_band(image);
     progress.advance("");
@@ -132,6 +112,27 @@ std::vector<std::filesystem::path> write_sample(const Image& sample, std::span<c
   return files;
 }
 
+std::unique_ptr<Renderer> make_renderer(const SynthOptions& options, const Fitted& fitted, Context& context,
+                                        Seed seed) {
+  if (fitted.domain.periodic) {
+    throw std::invalid_argument("--renderer gpu draws windows of the plane: expected --no-periodic or --size");
+  }
+  ShaderRequest request = options.gpu.read_request(seed);
+  request.near = {fitted.domain.step * fitted.domain.size.width / 2,
+                  fitted.domain.step * fitted.domain.size.height / 2};
+  const std::string name = options.model.method.empty() ? options.model_file.string() : options.model.method;
+  const ShaderRecipe recipe = shader_of(*fitted.model, name, request);
+  return std::make_unique<Renderer>(context, recipe, options.gpu.read_path(context.info()));
+}
+
+Frame frame_of(const Domain& domain) {
+  Frame frame;
+  frame.size = domain.size;
+  frame.origin = {domain.origin.x, domain.origin.y};
+  frame.step = domain.step;
+  return frame;
+}
+
 int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
   const tbb::global_control threads = limit_threads(globals);
   const ModelOptions& asked = options.model;
@@ -139,17 +140,26 @@ int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
   if (from_file != asked.method.empty() || from_file != asked.exemplar.empty()) {
     throw std::invalid_argument("synth: expected either METHOD EXEMPLAR or --model FILE");
   }
+  if (options.gpu.any_given() && !options.on_gpu) {
+    throw std::invalid_argument("options of --renderer gpu without it: expected --renderer gpu");
+  }
+  const std::unique_ptr<Context> context = options.on_gpu ? options.gpu.make_context() : nullptr;
   const Fitted fitted = from_file ? read_fitted(options) : fit_to_exemplar(asked, globals.quiet);
   const Domain& domain = fitted.domain;
   std::vector<std::filesystem::path> files{options.output};
-  const Clock::time_point start = Clock::now();
   const Seed seed = sample_seed(asked.seed, 0);
+  std::unique_ptr<Renderer> renderer;
+  if (context) renderer = make_renderer(options, fitted, *context, seed);
+  const Draw draw = [&](const Domain& window) {
+    return renderer ? renderer->draw(frame_of(window)) : fitted.model->synthesize(window, seed);
+  };
+  const Clock::time_point start = Clock::now();
   double synthesize_seconds = 0;
   if (domain.size.area() > most_pixels_at_once && !domain.periodic && options.output.extension() == ".exr") {
-    draw_bands(fitted, seed, options.output, globals.quiet);
+    draw_bands(draw, fitted, options.output, globals.quiet);
     synthesize_seconds = std::chrono::duration<double>(Clock::now() - start).count();
   } else {
-    const Image sample = fitted.model->synthesize(domain, seed);
+    const Image sample = draw(domain);
     synthesize_seconds = std::chrono::duration<double>(Clock::now() - start).count();
     files = write_sample(sample, fitted.maps, options.output);
   }
@@ -158,18 +168,20 @@ int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
   names.reserve(files.size());
   for (const std::filesystem::path& file : files) names.push_back(file.string());
   if (options.json) {
-    print_json({{"output", options.output.string()},
-                {"files", names},
-                {"seconds", {{"analyze", fitted.seconds}, {"synthesize", synthesize_seconds}}},
-                {"seed", asked.seed},
-                {"size", {domain.size.width, domain.size.height}},
-                {"periodic", domain.periodic},
-                {"step", domain.step}});
+    nlohmann::ordered_json document = {{"output", options.output.string()},
+                                       {"files", names},
+                                       {"seconds", {{"analyze", fitted.seconds}, {"synthesize", synthesize_seconds}}},
+                                       {"seed", asked.seed},
+                                       {"size", {domain.size.width, domain.size.height}},
+                                       {"periodic", domain.periodic},
+                                       {"step", domain.step}};
+    if (context) document["gpu"] = to_json(context->info());
+    print_json(document);
     return 0;
   }
-  fmt::print("{}: {}x{} {}, seed {} (analysis {:.1f} ms, synthesis {:.1f} ms)\n", fmt::join(names, " "),
+  fmt::print("{}: {}x{} {}, seed {} (analysis {:.1f} ms, synthesis {:.1f} ms{})\n", fmt::join(names, " "),
              domain.size.width, domain.size.height, domain.periodic ? "torus" : "window", asked.seed,
-             1e3 * fitted.seconds, 1e3 * synthesize_seconds);
+             1e3 * fitted.seconds, 1e3 * synthesize_seconds, context ? " by " + renderer_label(context->info()) : "");
   if (!globals.quiet && !from_file) {
     fmt::print(stderr, "next: textonbench measure {} {} tells how good it is\n", asked.method, asked.exemplar);
   }
@@ -195,11 +207,17 @@ Command synth_command(CLI::App& app, const GlobalOptions& globals) {
           "written in tiles, in little memory. Maps of a stack are the channels MAP.R, MAP.G, MAP.B or MAP.Y of one "
           ".exr, or one .png each: OUTPUT_MAP.png")
       ->required();
+  const auto renderer = [options](const std::string& name) { options->on_gpu = name == "gpu"; };
+  synth->add_option_function<std::string>("--renderer", renderer, "Who draws: cpu, or gpu for noise of the plane (cpu)")
+      ->check(CLI::IsMember({"cpu", "gpu"}))
+      ->type_name("cpu|gpu");
+  options->gpu.add_to(*synth);
   synth->add_flag("--json", options->json, "Print one JSON document");
   set_examples(*synth,
                "  textonbench synth rpn mamurk_a_1 --seed 3 -o rpn.png\n"
                "  textonbench synth adsn photo.jpg --size 1024x768 -o large.png\n"
                "  textonbench synth texton_noise albedo.png+normal.png+height.png --size 1024x1024 -o material.exr\n"
+               "  textonbench synth texton_noise mamurk_e_1 --size 1024x768 --renderer gpu -o gpu.png\n"
                "  textonbench synth --model texton.json -p impacts=stratified -p mni=5 -o from_file.png");
   return {synth, [options, &globals] { return synthesize(*options, globals); }};
 }
