@@ -99,7 +99,6 @@ TEST_F(FpsTest, WhatTheRendererCannotDoIsTold) {
       {{"fps", "adsn", "white_noise"}, "adsn has no shader for a graphics processor: expected one of texton_noise"},
       {fps({"--size", "100000x2"}), "frame of 100000x2 pixels"},
       {fps({"-p", "order=5"}), "take manual fetches"},
-      {fps({"--filter", "mipmap", "--fetch", "manual"}), "expected hardware fetches"},
       {{"synth", "texton_noise", "white_noise", "--renderer", "gpu", "--path", "all", "-o", "x.png"},
        "expected one path"},
       {{"synth", "rpn", "white_noise", "--renderer", "gpu", "-o", "x.png"}, "expected --no-periodic or --size"}};
