@@ -72,7 +72,7 @@ Library::Library(std::initializer_list<const char*> names, std::string_view pack
   std::string reasons;
   for (const char* name : names) {
     name_ = name;
-    handle_ = dlopen(name, RTLD_NOW | RTLD_GLOBAL);
+    handle_ = dlopen(name, RTLD_NOW | RTLD_LOCAL);
     if (handle_ != nullptr) {
       return;
     }
@@ -168,7 +168,7 @@ ContextKind context_kind(std::string_view name) {
 bool is_software_renderer(std::string_view renderer) {
   std::string lower(renderer);
   std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  constexpr std::array<std::string_view, 6> software{"llvmpipe", "softpipe",    "swrast",
+  constexpr std::array<std::string_view, 7> software{"llvmpipe", "lavapipe",    "softpipe", "swrast",
                                                      "swr",      "swiftshader", "software"};
   return std::ranges::any_of(software, [&](std::string_view s) { return lower.find(s) != std::string::npos; });
 }

@@ -33,6 +33,7 @@ struct EglFunctions {
         bind_api(library.function<decltype(eglBindAPI)>("eglBindAPI")),
         choose_config(library.function<decltype(eglChooseConfig)>("eglChooseConfig")),
         create_pbuffer(library.function<decltype(eglCreatePbufferSurface)>("eglCreatePbufferSurface")),
+        destroy_surface(library.function<decltype(eglDestroySurface)>("eglDestroySurface")),
         create_context(library.function<decltype(eglCreateContext)>("eglCreateContext")),
         destroy_context(library.function<decltype(eglDestroyContext)>("eglDestroyContext")),
         make_current(library.function<decltype(eglMakeCurrent)>("eglMakeCurrent")) {}
@@ -51,6 +52,7 @@ struct EglFunctions {
   decltype(eglBindAPI)* bind_api;
   decltype(eglChooseConfig)* choose_config;
   decltype(eglCreatePbufferSurface)* create_pbuffer;
+  decltype(eglDestroySurface)* destroy_surface;
   decltype(eglCreateContext)* create_context;
   decltype(eglDestroyContext)* destroy_context;
   decltype(eglMakeCurrent)* make_current;
@@ -151,7 +153,7 @@ class EglContext final : public Context {
         return "no configuration with OpenGL";
       }
     }
-    for (const auto& [major, minor] : {std::pair{4, 6}, {4, 5}, {4, 3}, {4, 1}}) {
+    for (const auto& [major, minor] : {std::pair{4, 6}, {4, 5}, {4, 4}, {4, 3}, {4, 2}, {4, 1}, {3, 3}}) {
       const std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION,
                                              major,
                                              EGL_CONTEXT_MINOR_VERSION,
@@ -167,7 +169,7 @@ class EglContext final : public Context {
       }
     }
     if (context_ == EGL_NO_CONTEXT) {
-      return "no context of OpenGL 4.1: " + hexadecimal(egl_.get_error());
+      return "no context of OpenGL: " + hexadecimal(egl_.get_error());
     }
     if (!is_surfaceless) {
       constexpr std::array<EGLint, 5> size{EGL_WIDTH, 1, EGL_HEIGHT, 1, EGL_NONE};
@@ -185,6 +187,10 @@ class EglContext final : public Context {
       egl_.make_current(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
       egl_.destroy_context(display_, context_);
       context_ = EGL_NO_CONTEXT;
+    }
+    if (surface_ != EGL_NO_SURFACE) {
+      egl_.destroy_surface(display_, surface_);
+      surface_ = EGL_NO_SURFACE;
     }
   }
 

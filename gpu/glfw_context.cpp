@@ -13,8 +13,7 @@ class GlfwContext final : public Context {
       : Context(ContextKind::glfw),
         library_({"libglfw.so.3"}, "libglfw3"),
         make_current_(library_.function<decltype(glfwMakeContextCurrent)>("glfwMakeContextCurrent")),
-        destroy_window_(library_.function<decltype(glfwDestroyWindow)>("glfwDestroyWindow")),
-        terminate_(library_.function<decltype(glfwTerminate)>("glfwTerminate")) {
+        destroy_window_(library_.function<decltype(glfwDestroyWindow)>("glfwDestroyWindow")) {
     if (library_.function<decltype(glfwInit)>("glfwInit")() == GLFW_FALSE) {
       throw GpuError(fmt::format("GLFW finds no display: {}; --context egl and --context osmesa need none", reason()));
     }
@@ -27,9 +26,7 @@ class GlfwContext final : public Context {
     window_ =
         library_.function<decltype(glfwCreateWindow)>("glfwCreateWindow")(16, 16, "textonbench", nullptr, nullptr);
     if (window_ == nullptr) {
-      const std::string why = reason();
-      terminate_();
-      throw GpuError(fmt::format("GLFW makes no window with OpenGL 4.1: {}", why));
+      throw GpuError(fmt::format("GLFW makes no window with OpenGL 4.1: {}", reason()));
     }
     try {
       make_current();
@@ -52,15 +49,12 @@ class GlfwContext final : public Context {
     library_.function<decltype(glfwGetError)>("glfwGetError")(&text);
     return text == nullptr ? "no reason given" : text;
   }
-  void close() {
-    destroy_window_(window_);
-    terminate_();
-  }
+  /// GLFW stays started: terminating it would destroy the windows of this program's other contexts too.
+  void close() { destroy_window_(window_); }
 
   Library library_;
   decltype(glfwMakeContextCurrent)* make_current_;
   decltype(glfwDestroyWindow)* destroy_window_;
-  decltype(glfwTerminate)* terminate_;
   GLFWwindow* window_ = nullptr;
 };
 

@@ -73,6 +73,11 @@ void set_filter(const Context& context, const ShaderTexture& texture) {
   gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, between);
   gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, inside);
   if (texture.filter == ShaderFilter::anisotropic) {
+    if (context.info().software) {
+      throw GpuError(fmt::format(
+          "anisotropic filtering by {}, which ignores the gradients that a shader gives: take manual fetches",
+          context.info().renderer));
+    }
     GLfloat most = 0;
     if (context.info().at_least(4, 6) || has_extension(context, "GL_ARB_texture_filter_anisotropic") ||
         has_extension(context, "GL_EXT_texture_filter_anisotropic")) {

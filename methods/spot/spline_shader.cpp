@@ -139,7 +139,7 @@ ShaderTexture texton_texture(const Texton& coefficients, double scale, const Sha
   texture.layers = layout.layers;
   texture.components = layout.components;
   texture.half_float = request.half_float;
-  texture.linear = true;
+  texture.linear = request.fetch == ShaderFetch::hardware || is_filtered(request);
   // Probes of the shader's own choice are trilinear ones.
   const bool own_probes = request.fetch == ShaderFetch::manual && request.filter == ShaderFilter::anisotropic;
   texture.filter = own_probes ? ShaderFilter::trilinear : request.filter;

@@ -149,6 +149,12 @@ TEST_P(RendererTest, UnusableRecipesAndFramesAreRefusedWithTheReason) {
   recipe = plane_probe();
   recipe.textures.push_back({.sampler = "big", .size = {1 << 20, 1}, .levels = {{}}});
   EXPECT_THAT(message(frame, recipe), HasSubstr("1048576x1"));
+  if (context_->info().software) {
+    recipe = plane_probe();
+    recipe.textures.push_back(
+        {.sampler = "texton", .size = {1, 1}, .filter = ShaderFilter::anisotropic, .levels = {{0.0F}}});
+    EXPECT_THAT(message(frame, recipe), HasSubstr("take manual fetches"));
+  }
   // Errors leave the context usable.
   EXPECT_EQ(message(frame, plane_probe()), "drawn");
 }
