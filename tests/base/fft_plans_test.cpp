@@ -17,11 +17,12 @@ namespace textonbench::fft_plans_test {
 using testing::HasSubstr;
 
 // The environment is read when a plan is made, and plans live as long as their process; so a new process runs tests of
-// this program, under the given settings of variables.
+// this program, under the given settings of variables; all of these tests, also where this process has only its share.
 int run_tests_of_new_process(const std::string& settings, const std::string& filter, const std::filesystem::path& log) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
-  return std::system(
-      ("env " + settings + " '" + program + "' --gtest_filter=" + filter + " >'" + log.string() + "' 2>&1").c_str());
+  return std::system(("env -u GTEST_TOTAL_SHARDS -u GTEST_SHARD_INDEX " + settings + " '" + program +
+                      "' --gtest_filter=" + filter + " >'" + log.string() + "' 2>&1")
+                         .c_str());
 }
 
 std::string contents(const std::filesystem::path& file) {
