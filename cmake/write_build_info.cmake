@@ -11,15 +11,17 @@ file(
   GLOB units
   RELATIVE ${SOURCE}
   ${SOURCE}/methods/*/*.cpp ${SOURCE}/experiments/metrics/*.cpp ${SOURCE}/experiments/execute.cpp
-  ${SOURCE}/experiments/procedural_exemplars.cpp)
+  ${SOURCE}/experiments/gpu_run.cpp ${SOURCE}/experiments/procedural_exemplars.cpp)
 list(FILTER units EXCLUDE REGEX "^methods/base/")
 list(SORT units)
-set(followed "^(methods/|experiments/metrics/|experiments/(execute|pictures|procedural_exemplars)\\.)")
+set(followed
+    "^(methods/|gpu/|experiments/metrics/|experiments/(execute|frame_timing|gpu_run|pictures|procedural_exemplars|shader_models)\\.)"
+)
 # A source whose first line of all includes is a header of its folder defines what that header declares.
 file(
   GLOB_RECURSE bodies
   RELATIVE ${SOURCE}
-  ${SOURCE}/methods/*.cpp ${SOURCE}/experiments/*.cpp)
+  ${SOURCE}/methods/*.cpp ${SOURCE}/gpu/*.cpp ${SOURCE}/experiments/*.cpp)
 foreach(body IN LISTS bodies)
   file(STRINGS ${SOURCE}/${body} first LIMIT_COUNT 1 REGEX "^#include ")
   if(first MATCHES "^#include \"([^\"]*)\"")
@@ -30,6 +32,13 @@ foreach(body IN LISTS bodies)
     endif()
   endif()
 endforeach()
+
+# The shaders are part of what their loader declares.
+file(
+  GLOB shaders
+  RELATIVE ${SOURCE}
+  ${SOURCE}/gpu/shaders/*.glsl)
+list(APPEND bodies_of_gpu/shader_source.h ${shaders})
 
 # Files that `file` leads to by itself, in `next_<file>`, and its hash, in `hash_<file>`.
 macro(read_source file)
@@ -97,7 +106,7 @@ if(GIT AND EXISTS ${SOURCE}/.git)
         ERROR_QUIET)
       # Sources that git does not know yet are compiled all the same.
       execute_process(
-        COMMAND ${GIT} -C ${SOURCE} ls-files --others --exclude-standard -- cmake configs experiments methods paper_figures
+        COMMAND ${GIT} -C ${SOURCE} ls-files --others --exclude-standard -- cmake configs experiments gpu methods paper_figures
         OUTPUT_VARIABLE untracked
         OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
       string(REPLACE "\n" ";" untracked "${untracked}")

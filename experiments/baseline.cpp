@@ -37,7 +37,7 @@ Record reduced(const Record& record) {
 bool is_current(const Record& record) {
   try {
     const RunSpec spec = run_spec_from_json(record["spec"]);
-    return provenance_of(record).value("code_version", "unknown") == code_version(spec.method, spec.metrics);
+    return provenance_of(record).value("code_version", "unknown") == code_version(spec);
   } catch (const std::invalid_argument&) {
     return false;  // a method or metric that is gone
   }

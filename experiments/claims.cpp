@@ -34,8 +34,9 @@ class CannotJudge : public std::runtime_error {
 std::optional<ParamValue> trait_of(const RunSpec& spec, const std::string& key) {
   if (key == "exemplar") return spec.exemplar;
   if (key == "seed") return static_cast<std::int64_t>(spec.seed);
-  const auto param = spec.params.find(key);
-  return param == spec.params.end() ? std::nullopt : std::optional(param->second);
+  const std::map<std::string, ParamValue> options = options_of(spec);
+  const auto option = options.find(key);
+  return option == options.end() ? std::nullopt : std::optional(option->second);
 }
 
 bool meets_conditions(const RunSpec& spec, const ClaimSelection& selection) {
@@ -154,6 +155,7 @@ PairedValues values_of(const ClaimSelection& selection, const Plan& plan, const 
     throw CannotJudge(fmt::format("exemplar not here: {}", fmt::join(names, ", ")));
   }
   std::size_t absent = 0, unsuccessful = 0;
+  std::set<std::string> refusals;
   std::map<std::pair<std::string, std::uint64_t>, std::vector<double>> values;
   for (const PlannedRun* run : runs) {
     const auto known = records.find(run->id);
@@ -161,6 +163,7 @@ PairedValues values_of(const ClaimSelection& selection, const Plan& plan, const 
       ++absent;
     } else if (known->second->value("status", "") != "ok") {
       ++unsuccessful;
+      if (known->second->value("status", "") == "refused") refusals.insert(known->second->value("reason", ""));
     } else {
       values[{run->spec.exemplar, run->spec.seed}].push_back(number_of(*known->second, selection));
       if (std::ranges::find(ids, run->id) == ids.end()) ids.push_back(run->id);
@@ -170,6 +173,7 @@ PairedValues values_of(const ClaimSelection& selection, const Plan& plan, const 
     throw CannotJudge(fmt::format("no record yet of {} of the {} runs \"{}\"", absent, runs.size(), selection.run));
   }
   if (unsuccessful > 0) {
+    if (refusals.size() == 1) throw CannotJudge(*refusals.begin());
     throw CannotJudge(
         fmt::format("{} of the {} runs \"{}\" failed or were refused", unsuccessful, runs.size(), selection.run));
   }
@@ -282,10 +286,7 @@ std::vector<ClaimOutcome> evaluate_claims(std::span<const Claim> claims, const C
   RecordsById latest;
   for (const Record& record : records) {
     const Record*& kept = latest[record.value("id", "")];
-    // A failure does not take the place of an earlier result.
-    if (kept == nullptr || record.value("status", "") != "failed" || kept->value("status", "") == "failed") {
-      kept = &record;
-    }
+    if (kept == nullptr || stands_for(record, *kept)) kept = &record;
   }
   std::vector<ClaimOutcome> outcomes;
   outcomes.reserve(claims.size());

@@ -101,16 +101,18 @@ void read_layer(TableReader& layer, RunsTable& runs) {
     }
     runs.combine = found->second;
   });
-  read("params", [&](const TomlValue& v) {
-    const TableReader is_a_table(v, "params");
-    for (const TomlEntry& entry : std::get<TomlTable>(v.data).entries) {
-      auto& values = runs.params[entry.key];
-      values.clear();
-      for (const TomlValue* element : read_axis(entry.value, "params." + entry.key)) {
-        values.push_back(read_scalar(*element, "params." + entry.key));
+  for (const auto& [key, options] : {std::pair{"params", &runs.params}, std::pair{"gpu", &runs.gpu}}) {
+    read(key, [&, path = std::string(key) + ".", &axes = *options](const TomlValue& v) {
+      const TableReader is_a_table(v, key);
+      for (const TomlEntry& entry : std::get<TomlTable>(v.data).entries) {
+        auto& values = axes[entry.key];
+        values.clear();
+        for (const TomlValue* element : read_axis(entry.value, path + entry.key)) {
+          values.push_back(read_scalar(*element, path + entry.key));
+        }
       }
-    }
-  });
+    });
+  }
   read("exclude", [&](const TomlValue& v) {
     runs.exclude.clear();
     for (const TomlValue& element : read_list(v, "exclude")) {

@@ -53,6 +53,7 @@ struct RunsTable {
   std::vector<std::string> metrics;
   std::vector<std::string> pictures;
   std::map<std::string, std::vector<ParamValue>> params;
+  std::map<std::string, std::vector<ParamValue>> gpu;      ///< of samples drawn there (gpu_run.h), else empty
   std::vector<std::map<std::string, ParamValue>> exclude;  ///< keys: method, exemplar, seed, or a parameter's name
   std::map<std::string, SourcePlace> places;               ///< of each key, for errors found later
 };

@@ -62,7 +62,7 @@ Record blank_record(const RunSpec& spec, const std::string& status, const std::s
   record["pictures"] = Record::object();
   record["time"] = {{"wall_seconds", nullptr}, {"cpu_seconds", nullptr}, {"peak_bytes", nullptr}, {"finished", now()}};
   record["provenance"] = provenance();
-  record["provenance"]["code_version"] = code_version(spec.method, spec.metrics);
+  record["provenance"]["code_version"] = code_version(spec);
   return record;
 }
 
@@ -82,11 +82,12 @@ Record to_json(const MetricValue& value, std::string_view unit) {
 /// One run on its way from exemplar to numbers.
 class Execution {
  public:
-  /// `second` may be null.
-  Execution(const RunSpec& spec, const Exemplar& exemplar, const Exemplar* second)
+  /// `second` and `drawer` may be null.
+  Execution(const RunSpec& spec, const Exemplar& exemplar, const Exemplar* second, FrameDrawer* drawer)
       : spec_(spec),
         exemplar_(exemplar),
         second_(second),
+        drawer_(drawer),
         method_(find_method(spec.method)),
         params_(method_.params, spec.params),
         domain_{.size = spec.size.area() > 0 ? spec.size : exemplar.pixels.extent(),
@@ -100,7 +101,8 @@ class Execution {
     synthesize();
     const bool needs_target =
         !spec_.pictures.empty() || std::any_of(spec_.metrics.begin(), spec_.metrics.end(), [](const std::string& name) {
-          return find_metric(name).level != MetricLevel::cost;
+          const MetricLevel level = find_metric(name).level;
+          return level == MetricLevel::model || level == MetricLevel::sample;
         });
     if (needs_target) target_.emplace(make_target(exemplar_));
   }
@@ -116,6 +118,9 @@ class Execution {
         return metric.of_limit != nullptr ? measure_against_limit(metric) : measure_on_samples(metric);
       case MetricLevel::cost:
         return plain(cost(metric.name));
+      case MetricLevel::frame:
+        if (drawer_ == nullptr) throw std::logic_error(fmt::format("{} without what draws frames", metric.name));
+        return plain(drawer_->measure(metric.name, *model_, domain_, sample_seed(spec_.seed, 0)));
     }
     return std::nullopt;
   }
@@ -151,7 +156,9 @@ class Execution {
     std::vector<double> seconds;
     for (int i = 0; i < spec_.samples; ++i) {
       const Clock::time_point start = Clock::now();
-      samples_.push_back(model_->synthesize(domain_, sample_seed(spec_.seed, i)));
+      const Seed seed = sample_seed(spec_.seed, i);
+      samples_.push_back(drawer_ != nullptr ? drawer_->draw(*model_, domain_, seed)
+                                            : model_->synthesize(domain_, seed));
       seconds.push_back(seconds_since(start));
     }
     synthesize_seconds_ = median(seconds);
@@ -214,6 +221,7 @@ class Execution {
   const RunSpec& spec_;
   const Exemplar& exemplar_;
   const Exemplar* second_;
+  FrameDrawer* drawer_;
   const MethodEntry& method_;
   Params params_;
   Domain domain_;
@@ -247,7 +255,8 @@ Record unsuccessful_record(const RunSpec& spec, const std::string& status, const
   return blank_record(spec, status, reason);
 }
 
-Record execute(const RunSpec& spec, const ExemplarCatalog& exemplars, const ResultsFolder* results) {
+Record execute(const RunSpec& spec, const ExemplarCatalog& exemplars, const ResultsFolder* results,
+               FrameDrawer* drawer) {
   const Clock::time_point start = Clock::now();
   const double cpu_start = cpu_seconds();
   if (spec.samples < 1) throw std::invalid_argument(fmt::format("samples = {}: expected at least 1", spec.samples));
@@ -267,7 +276,7 @@ Record execute(const RunSpec& spec, const ExemplarCatalog& exemplars, const Resu
   std::optional<Exemplar> second;
   if (const auto named = second_exemplar(method, spec.params, exemplars)) second = load_exemplar(*named);
 
-  Execution execution(spec, exemplar, second ? &*second : nullptr);
+  Execution execution(spec, exemplar, second ? &*second : nullptr, drawer);
   const std::optional<std::string> refusal = execution.refusal();
   Record record = refusal ? blank_record(spec, "refused", *refusal) : blank_record(spec, "ok", "");
   record["exemplar"] = {{"width", exemplar.pixels.width()},
@@ -285,6 +294,7 @@ Record execute(const RunSpec& spec, const ExemplarCatalog& exemplars, const Resu
       record["pictures"][name] = keep(execution.picture(find_picture(name)), exemplar.maps, name, *results);
     }
   }
+  if (drawer != nullptr) drawer->describe(record);
   record["time"] = {{"wall_seconds", seconds_since(start)},
                     {"cpu_seconds", cpu_seconds() - cpu_start},
                     {"peak_bytes", peak_bytes()},

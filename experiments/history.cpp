@@ -56,7 +56,7 @@ std::string code_of(const Record& record, const Record& spec) {
   std::string recorded = text_in(record, {"provenance", "code_version"});
   try {
     const auto metrics = spec.at("metrics").get<std::vector<std::string>>();
-    return recorded == code_version(text_in(spec, {"method"}), metrics) ? current_code : recorded;
+    return recorded == code_version(text_in(spec, {"method"}), metrics, spec.contains("gpu")) ? current_code : recorded;
   } catch (const std::exception&) {
     return recorded;  // a method or metric that is gone
   }
@@ -67,8 +67,8 @@ std::string code_of(const Record& record, const Record& spec) {
 History::FlatSpec History::flatten(const Record& spec, const std::string& code_version) {
   FlatSpec flat{{"code_version", code_version}};
   for (const auto& [key, value] : spec.items()) {
-    if (key == "params" && value.is_object()) {
-      for (const auto& [name, param] : value.items()) flat["params." + name] = param.dump();
+    if ((key == "params" || key == "gpu") && value.is_object()) {
+      for (const auto& [name, option] : value.items()) flat[fmt::format("{}.{}", key, name)] = option.dump();
     } else {
       flat[key] = value.dump();
     }

@@ -23,6 +23,14 @@ Image sample(const PictureSource& source) {
   return source.samples[index];
 }
 
+/// A sixth of the first sample a side, in the middle across, around the height `down` of its own.
+Image close_up(const PictureSource& source, double down) {
+  const Image whole = sample<0>(source);
+  const Extent part{std::max(1, whole.width() / 6), std::max(1, whole.height() / 6)};
+  const auto top = static_cast<int>(std::lround(down * whole.height())) - part.height / 2;
+  return crop(whole, (whole.width() - part.width) / 2, std::clamp(top, 0, whole.height() - part.height), part);
+}
+
 /// u − per(u) + 1/2: the smooth component has mean zero.
 Image smooth_component(const PictureSource& source) {
   Image difference = source.target.exemplar.pixels;
@@ -93,6 +101,8 @@ constexpr std::array entries{
     PictureEntry{"mean_modulus", "Modulus of the samples",
                  [](const PictureSource& s) { return mean_modulus_picture(s.samples); }},
     PictureEntry{"texton", "Texton", texton_picture},
+    PictureEntry{"sample_far", "Close-up of the upper part", [](const PictureSource& s) { return close_up(s, 0.35); }},
+    PictureEntry{"sample_near", "Close-up of the lower part", [](const PictureSource& s) { return close_up(s, 0.8); }},
     PictureEntry{"sample_phase", "Phase of the sample",
                  [](const PictureSource& s) { return phase_picture(sample<0>(s)); }},
 };

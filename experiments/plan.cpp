@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "experiments/gpu_run.h"
 #include "experiments/metrics/metric.h"
 #include "experiments/pictures.h"
 #include "experiments/sweep.h"
@@ -71,7 +72,7 @@ class ExemplarChooser {
 };
 
 /// Sorted names, each once; "@all", "@model", "@sample" and "@cost" stand for metrics of that level,
-/// "@identity" for those that test theory, which the others leave out.
+/// "@identity" for those that test theory, which the others leave out, as they do those of frames.
 std::vector<std::string> choose_metrics(const RunsTable& table) {
   std::set<std::string> names;
   for (std::size_t i = 0; i < table.metrics.size(); ++i) {
@@ -90,6 +91,7 @@ std::vector<std::string> choose_metrics(const RunsTable& table) {
       }
       for (const MetricEntry& entry : metric_catalog()) {
         const bool in_group = name == "@identity" || name == "@all" || entry.level == level->second;
+        if (entry.level == MetricLevel::frame) continue;
         if (in_group && entry.identity == (name == "@identity")) {
           names.insert(std::string(entry.name));
         }
@@ -106,6 +108,13 @@ std::vector<std::string> choose_metrics(const RunsTable& table) {
     }
   }
   return {names.begin(), names.end()};
+}
+
+void check_gpu(const RunsTable& table, const std::vector<std::string>& metrics) {
+  for (const bool periodic : table.periodic) {
+    const std::optional<GpuObjection> objection = object_to_gpu(metrics, !table.gpu.empty(), periodic);
+    if (objection) throw ConfigError(place_of(table, objection->key), objection->message);
+  }
 }
 
 std::vector<std::string> choose_pictures(const RunsTable& table) {
@@ -141,10 +150,12 @@ Plan make_plan(const Config& config, const ExemplarCatalog& exemplars, std::size
   Plan plan;
   std::unordered_map<std::string, std::size_t> index_of;
   for (const RunsTable& table : config.runs) {
+    const std::vector<std::string> metrics = choose_metrics(table);
+    check_gpu(table, metrics);
     const Sweep sweep(table,
                       {.methods = choose_methods(table),
                        .exemplars = chooser.choose(table),
-                       .metrics = choose_metrics(table),
+                       .metrics = metrics,
                        .pictures = choose_pictures(table)},
                       exemplars);
     if (const std::size_t count = sweep.count(); count > most_runs) {

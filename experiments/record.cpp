@@ -62,9 +62,14 @@ int write_all(int descriptor, std::string_view bytes) {
   return ::fsync(descriptor) == 0 ? 0 : errno;
 }
 
-bool succeeded(const Record& record) { return record["status"] != "failed"; }
+int rank_of(const Record& record) {
+  const std::string status = record.value("status", "");
+  return status == "ok" ? 2 : status == "failed" ? 0 : 1;
+}
 
 }  // namespace
+
+bool stands_for(const Record& later, const Record& earlier) { return rank_of(later) >= rank_of(earlier); }
 
 std::optional<std::string> record_defect(const Record& json) {
   if (json.is_discarded()) return "not JSON (cut short?)";
@@ -152,7 +157,7 @@ std::vector<std::optional<Record>> latest_by_id(const std::vector<Record>& recor
   std::map<std::string, const Record*> latest;
   for (const Record& record : records) {
     const Record*& kept = latest[record["id"].get<std::string>()];
-    if (kept == nullptr || succeeded(record) || !succeeded(*kept)) kept = &record;
+    if (kept == nullptr || stands_for(record, *kept)) kept = &record;
   }
   std::vector<std::optional<Record>> result;
   result.reserve(ids.size());

@@ -17,7 +17,8 @@ namespace textonbench {
 /// ended it: "SIGSEGV"), log (file of what it printed, when it failed and printed), spec (see run_spec.h), command,
 /// exemplar {width, height, channels}, metrics {NAME: {value, stderr, unit, floor}} (stderr and floor null where they
 /// do not exist), pictures {NAME: {file, width, height}} (file relative to the results folder), time {wall_seconds,
-/// cpu_seconds, peak_bytes, finished (ISO 8601)}, provenance (see provenance.h).
+/// cpu_seconds, peak_bytes, finished (ISO 8601)}, provenance (see provenance.h). Of samples drawn on a graphics
+/// processor also provenance.gpu and, when it was timed, timing (see gpu_run.h).
 using Record = nlohmann::ordered_json;
 
 /// A line of records.jsonl that could not be used.
@@ -25,6 +26,10 @@ struct BadLine {
   std::size_t line;
   std::string reason;
 };
+
+/// Whether, of two records with one id, the one that was recorded later stands for both: it does, but for a failure
+/// after anything else and a refusal after a success (on a machine without a graphics processor, say).
+bool stands_for(const Record& later, const Record& earlier);
 
 /// Why a JSON value is no record, or nothing.
 std::optional<std::string> record_defect(const Record& json);

@@ -70,7 +70,7 @@ ResultSet read_result_set(const std::filesystem::path& folder_or_file) {
       continue;
     }
     Record& kept = set.runs[computation(json)];
-    if (kept.is_null() || json["status"] != "failed" || kept["status"] == "failed") kept = std::move(json);
+    if (kept.is_null() || stands_for(json, kept)) kept = std::move(json);
   }
   if (in.bad() || !in.eof()) throw std::invalid_argument(fmt::format("{}: cannot be read", set.file.string()));
   if (set.runs.empty()) throw std::invalid_argument(fmt::format("{}: no usable record in it", set.file.string()));

@@ -18,9 +18,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::string_view, 12> keys{"method",  "params",   "file_sha256", "exemplar", "exemplar_sha256",
-                                                "size",    "periodic", "step",        "seed",     "samples",
-                                                "metrics", "pictures"};
+constexpr std::array<std::string_view, 13> keys{"method",  "params",   "file_sha256", "exemplar", "exemplar_sha256",
+                                                "size",    "periodic", "step",        "gpu",      "seed",
+                                                "samples", "metrics",  "pictures"};
 
 [[noreturn]] void refuse(std::string_view key, std::string_view expected, const Json& found) {
   throw std::invalid_argument(fmt::format("run spec: {}: expected {}, found {}", key, expected, found.dump()));
@@ -69,7 +69,7 @@ std::vector<std::string> read_names(const Json& json, std::string_view key) {
   return names;
 }
 
-ParamValue read_param(const std::string& name, const Json& value) {
+ParamValue read_param(const std::string& path, const Json& value) {
   if (value.is_boolean()) {
     return value.get<bool>();
   }
@@ -82,7 +82,27 @@ ParamValue read_param(const std::string& name, const Json& value) {
   if (value.is_string()) {
     return value.get<std::string>();
   }
-  refuse("params." + name, "a string, a number, true or false", value);
+  refuse(path, "a string, a number, true or false", value);
+}
+
+std::map<std::string, ParamValue> read_options(const Json& json, const std::string& key) {
+  const Json& options = require(json, key);
+  if (!options.is_object()) {
+    refuse(key, "an object", options);
+  }
+  std::map<std::string, ParamValue> values;
+  for (const auto& [name, value] : options.items()) {
+    values.emplace(name, read_param(key + "." + name, value));
+  }
+  return values;
+}
+
+Json options_to_json(const std::map<std::string, ParamValue>& options) {
+  Json json = Json::object();
+  for (const auto& [name, value] : options) {
+    std::visit([&, key = name](const auto& v) { json[key] = v; }, value);
+  }
+  return json;
 }
 
 /// One word for a POSIX shell.
@@ -134,19 +154,16 @@ std::map<std::string, std::string> hash_named(const MethodEntry& method,
 }
 
 Json to_json(const RunSpec& spec) {
-  Json params = Json::object();
-  for (const auto& [name, value] : spec.params) {
-    std::visit([&, key = name](const auto& v) { params[key] = v; }, value);
-  }
   Json json;
   json["method"] = spec.method;
-  json["params"] = std::move(params);
+  json["params"] = options_to_json(spec.params);
   if (!spec.file_sha256.empty()) json["file_sha256"] = spec.file_sha256;
   json["exemplar"] = spec.exemplar;
   json["exemplar_sha256"] = spec.exemplar_sha256;
   json["size"] = {spec.size.width, spec.size.height};
   json["periodic"] = spec.periodic;
   if (spec.step != 1) json["step"] = spec.step;
+  if (!spec.gpu.empty()) json["gpu"] = options_to_json(spec.gpu);
   json["seed"] = spec.seed;
   json["samples"] = spec.samples;
   json["metrics"] = spec.metrics;
@@ -165,13 +182,7 @@ RunSpec run_spec_from_json(const Json& json) {
   }
   RunSpec spec;
   spec.method = read_text(json, "method");
-  const Json& params = require(json, "params");
-  if (!params.is_object()) {
-    refuse("params", "an object", params);
-  }
-  for (const auto& [name, value] : params.items()) {
-    spec.params.emplace(name, read_param(name, value));
-  }
+  spec.params = read_options(json, "params");
   if (json.contains("file_sha256")) {
     const Json& hashes = json["file_sha256"];
     if (!hashes.is_object()) {
@@ -197,6 +208,7 @@ RunSpec run_spec_from_json(const Json& json) {
     if (!json["step"].is_number()) refuse("step", "a number", json["step"]);
     spec.step = json["step"].get<double>();
   }
+  if (json.contains("gpu")) spec.gpu = read_options(json, "gpu");
   spec.seed = read_whole(require(json, "seed"), "seed", 0, std::numeric_limits<std::uint64_t>::max());
   spec.samples = read_int(require(json, "samples"), "samples", 1);
   spec.metrics = read_names(json, "metrics");
@@ -204,11 +216,15 @@ RunSpec run_spec_from_json(const Json& json) {
   return spec;
 }
 
-std::string code_version(const std::string& method, std::span<const std::string> metrics) {
+std::string code_version(const std::string& method, std::span<const std::string> metrics, bool on_gpu) {
   // A plan of many runs asks for the same again and again.
   thread_local std::string last_method, last_version;
   thread_local std::vector<std::string> last_metrics;
-  if (!last_version.empty() && last_method == method && std::ranges::equal(last_metrics, metrics)) return last_version;
+  thread_local bool last_on_gpu = false;
+  if (!last_version.empty() && last_on_gpu == on_gpu && last_method == method &&
+      std::ranges::equal(last_metrics, metrics)) {
+    return last_version;
+  }
   std::set<std::string_view> sources;
   for (const std::string& name : metrics) {
     if (const std::string_view source = find_metric(name).source; !source.empty()) sources.insert(source);
@@ -216,22 +232,35 @@ std::string code_version(const std::string& method, std::span<const std::string>
   std::string versions = fmt::format("{} {} {} {}", source_version("experiments/execute"),
                                      source_version("experiments/procedural_exemplars"), method_version(floor_method),
                                      method_version(method));
+  if (on_gpu) versions += fmt::format(" {}", source_version("experiments/gpu_run"));
   for (const std::string_view source : sources) {
     versions += fmt::format(" {}", source_version(fmt::format("experiments/metrics/{}", source)));
   }
   last_method = method;
   last_metrics.assign(metrics.begin(), metrics.end());
+  last_on_gpu = on_gpu;
   return last_version = sha256(versions).substr(0, 16);
 }
 
+std::string code_version(const RunSpec& spec) { return code_version(spec.method, spec.metrics, !spec.gpu.empty()); }
+
 std::string run_id(const RunSpec& spec) {
-  return sha256(to_json(spec).dump() + "\ncode " + code_version(spec.method, spec.metrics)).substr(0, 16);
+  return sha256(to_json(spec).dump() + "\ncode " + code_version(spec)).substr(0, 16);
+}
+
+std::map<std::string, ParamValue> options_of(const RunSpec& spec) {
+  std::map<std::string, ParamValue> options = spec.params;
+  for (const auto& [name, value] : spec.gpu) options.emplace("gpu." + name, value);
+  return options;
 }
 
 std::string command_line(const RunSpec& spec) {
   std::string command = fmt::format("textonbench measure {} {}", quote(spec.method), quote(spec.exemplar));
   for (const auto& [name, value] : spec.params) {
     command += " -p " + quote(fmt::format("{}={}", name, to_string(value)));
+  }
+  for (const auto& [name, value] : spec.gpu) {
+    command += " --gpu " + quote(fmt::format("{}={}", name, to_string(value)));
   }
   // On the command line a sample is a torus unless a size is given.
   if (spec.size != Extent{}) {

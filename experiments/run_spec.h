@@ -25,6 +25,8 @@ struct RunSpec {
   Extent size;  ///< of the samples; 0x0 means the exemplar's own size
   bool periodic = true;
   double step = 1;  ///< between pixels of a sample, in pixels of the exemplar
+  /// How a graphics processor draws the samples (gpu_run.h), complete; empty where the method does, on the processor.
+  std::map<std::string, ParamValue> gpu = {};
   std::uint64_t seed = 1;
   int samples = 1;
   std::vector<std::string> metrics;   ///< catalogue names, sorted
@@ -45,7 +47,8 @@ std::map<std::string, std::string> hash_named(const MethodEntry& method,
 std::optional<ExemplarInfo> second_exemplar(const MethodEntry& method, const std::map<std::string, ParamValue>& params,
                                             const ExemplarCatalog& catalog);
 
-/// JSON with a fixed key order; the limits are left out, and file_sha256 where no option names a file.
+/// JSON with a fixed key order; the limits are left out, file_sha256 where no option names a file, and gpu where it is
+/// empty.
 nlohmann::ordered_json to_json(const RunSpec& spec);
 /// Throws std::invalid_argument naming the key that is missing or wrong.
 RunSpec run_spec_from_json(const nlohmann::ordered_json& json);
@@ -54,14 +57,19 @@ RunSpec run_spec_from_json(const nlohmann::ordered_json& json);
 inline constexpr const char* floor_method = "adsn";
 
 /// 16 hexadecimal digits: SHA-256 of the sources that decide these metrics of a method (provenance.h): the method's own
-/// file, those of the metrics, what executes them and measures their floors, and what draws the procedural exemplars.
-/// Throws std::invalid_argument for an unknown method or metric.
-std::string code_version(const std::string& method, std::span<const std::string> metrics);
+/// file, those of the metrics, what executes them and measures their floors, what draws the procedural exemplars and,
+/// of samples drawn on a graphics processor, the renderer with its shaders. Throws std::invalid_argument for an unknown
+/// method or metric.
+std::string code_version(const std::string& method, std::span<const std::string> metrics, bool on_gpu);
+std::string code_version(const RunSpec& spec);
 
 /// 16 hexadecimal digits: SHA-256 of to_json(spec) and of its code_version. Two runs with the same id compute the same.
 /// The pictures to keep are part of it, because a record without them cannot stand for one with them; the label of its
 /// table, the order of the plan, threads, jobs and limits are not.
 std::string run_id(const RunSpec& spec);
+
+/// Params, and the options under gpu as "gpu.path" and so on: what sets apart the runs of a method on an exemplar.
+std::map<std::string, ParamValue> options_of(const RunSpec& spec);
 
 /// The command that repeats the run by hand: "textonbench measure rpn mamurk_a_1 -p phase=added --seed 1 --samples 8
 /// …".

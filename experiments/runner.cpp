@@ -20,6 +20,7 @@
 #include "experiments/child_process.h"
 #include "experiments/execute.h"
 #include "experiments/folder_lock.h"
+#include "experiments/gpu_run.h"
 #include "experiments/history.h"
 #include "experiments/progress.h"
 #include "experiments/provenance.h"
@@ -67,7 +68,7 @@ std::string work(const RunSpec& spec, const ExemplarCatalog& exemplars, const Re
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   Record record;
   try {
-    record = execute(spec, exemplars, &results);
+    record = execute_run(spec, exemplars, &results);
   } catch (const std::bad_alloc&) {
     throw;  // there may be no memory for a record
   } catch (const std::exception& error) {
@@ -76,8 +77,11 @@ std::string work(const RunSpec& spec, const ExemplarCatalog& exemplars, const Re
   return record.dump(-1, ' ', false, Record::error_handler_t::replace);
 }
 
-/// Three quarters of the machine's memory, shared by the children.
-std::int64_t memory_share(int jobs) {
+/// What a run may take, in bytes: three quarters of the machine's memory, shared by the children. 0, no limit, beside
+/// the driver of a graphics processor, which may set aside far more than it uses.
+std::int64_t memory_limit(const RunSpec& spec, int jobs) {
+  if (spec.memory_limit_mb > 0) return std::int64_t{spec.memory_limit_mb} << 20;
+  if (!spec.gpu.empty()) return 0;
   return std::int64_t{sysconf(_SC_PHYS_PAGES)} * sysconf(_SC_PAGESIZE) / 4 * 3 / jobs;
 }
 
@@ -89,13 +93,12 @@ class Running {
         results_(results),
         child_([&] { return work(planned.spec, exemplars, results, options.threads); },
                results.path() / "logs" / fmt::format(".draft_{}_{}.stderr", getpid(), planned.id),
-               {.seconds = planned.spec.timeout_seconds,
-                .memory_bytes = planned.spec.memory_limit_mb > 0 ? std::int64_t{planned.spec.memory_limit_mb} << 20
-                                                                 : memory_share(options.jobs)}) {}
+               {.seconds = planned.spec.timeout_seconds, .memory_bytes = memory_limit(planned.spec, options.jobs)}) {}
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
   ~Running() { std::filesystem::remove(child_.log(), ignored_); }
 
+  bool draws_on_gpu() const { return !run_.spec.gpu.empty(); }
   ChildProcess& child() { return child_; }
   const ChildProcess& child() const { return child_; }
 
@@ -192,6 +195,8 @@ RunSummary run_plan(const Plan& plan, const ExemplarCatalog& exemplars, const Re
   std::list<Running> running;
   while (!pending.empty() || !running.empty()) {
     while (!pending.empty() && std::ssize(running) < options.jobs) {
+      // Two at once would share the graphics processor, and both their times would be wrong.
+      if (!pending.front()->spec.gpu.empty() && std::ranges::any_of(running, &Running::draws_on_gpu)) break;
       running.emplace_back(*pending.front(), exemplars, results, options);
       pending.pop_front();
     }

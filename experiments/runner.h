@@ -39,7 +39,8 @@ Record record_of(const PlannedRun& run, const ChildProcess& child);
 ///
 /// The folder also gets logs/run-DATE.log (progress), logs/ID.stderr (what a failed run printed) and, of a program
 /// built from uncommitted sources, provenance/SHA256.diff. A run without a memory limit of its own may take its share,
-/// among `jobs`, of three quarters of the machine's memory.
+/// among `jobs`, of three quarters of the machine's memory; one that a graphics processor draws has no limit then, and
+/// runs beside no other such run.
 RunSummary run_plan(const Plan& plan, const ExemplarCatalog& exemplars, const ResultsFolder& results,
                     const RunOptions& options, bool* interrupted);
 

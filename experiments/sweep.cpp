@@ -7,6 +7,7 @@
 #include <limits>
 #include <string_view>
 
+#include "experiments/gpu_run.h"
 #include "experiments/toml_reader.h"
 
 namespace textonbench {
@@ -38,7 +39,8 @@ Sweep::Sweep(const RunsTable& table, SweepChoices choices, const ExemplarCatalog
     : table_(table),
       choices_(std::move(choices)),
       catalog_(catalog),
-      params_(table.params.begin(), table.params.end()) {
+      params_(table.params.begin(), table.params.end()),
+      gpu_(table.gpu.begin(), table.gpu.end()) {
   axes_ = {{"method", choices_.methods.size()},
            {"exemplars", choices_.exemplars.size()},
            {"size", table.sizes.size()},
@@ -52,6 +54,7 @@ Sweep::Sweep(const RunsTable& table, SweepChoices choices, const ExemplarCatalog
       }
     }
   }
+  add_gpu_axes();
   axes_.emplace_back("seeds", table.seeds.size());
   if (table.combine == Combine::zip) {
     check_zip();
@@ -61,6 +64,20 @@ Sweep::Sweep(const RunsTable& table, SweepChoices choices, const ExemplarCatalog
   }
   for (std::size_t i = 0; i < table.exclude.size(); ++i) {
     exclusions_.push_back(read_exclusion(i));
+  }
+}
+
+void Sweep::add_gpu_axes() {
+  const std::span<const ParamSpec> options = gpu_run_options();
+  for (const auto& [name, values] : gpu_) {
+    const std::string path = "gpu." + name;
+    axes_.emplace_back(path, values.size());
+    const bool known = std::ranges::find(options, name, &ParamSpec::name) != options.end();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      at_place(table_, known ? fmt::format("{}[{}]", path, i) : key_path(path), [&, &key = name, &value = values[i]] {
+        return Params(options, {{key, value}}).values();
+      });
+    }
   }
 }
 
@@ -224,6 +241,10 @@ RunSpec Sweep::make_spec(const std::vector<std::size_t>& digits) const {
     given.emplace(params_[i].first, params_[i].second[digits[first_param_axis + i]]);
   }
   const std::map<std::string, ParamValue> params = Params(method.params, given).values();
+  std::map<std::string, ParamValue> given_gpu;
+  for (std::size_t i = 0; i < gpu_.size(); ++i) {
+    given_gpu.emplace(gpu_[i].first, gpu_[i].second[digits[first_param_axis + params_.size() + i]]);
+  }
   std::map<std::string, std::string> files =
       at_place(table_, "params", [&] { return hash_named(method, params, catalog_); });
   return {.method = std::string(method.name),
@@ -234,6 +255,7 @@ RunSpec Sweep::make_spec(const std::vector<std::size_t>& digits) const {
           .size = table_.sizes[digits[size_axis]],
           .periodic = table_.periodic[digits[periodic_axis]],
           .step = table_.step,
+          .gpu = gpu_.empty() ? given_gpu : Params(gpu_run_options(), given_gpu).values(),
           .seed = table_.seeds[digits.back()],
           .samples = table_.samples,
           .metrics = choices_.metrics,

@@ -51,6 +51,7 @@ class Sweep {
   void expand(const std::function<void(RunSpec, const ChosenExemplar&)>& take) const;
 
  private:
+  void add_gpu_axes();
   ParamValue check_param(const MethodEntry& method, const std::string& name, const ParamValue& value,
                          const std::string& path, const std::string& element) const;
   Exclusion read_exclusion(std::size_t index) const;
@@ -68,6 +69,7 @@ class Sweep {
   SweepChoices choices_;
   const ExemplarCatalog& catalog_;
   std::vector<std::pair<std::string, std::vector<ParamValue>>> params_;
+  std::vector<std::pair<std::string, std::vector<ParamValue>>> gpu_;
   std::vector<Exclusion> exclusions_;
   std::vector<std::pair<std::string, std::size_t>> axes_;  ///< key and number of values, slowest first
 };

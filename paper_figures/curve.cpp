@@ -37,8 +37,9 @@ std::string required_curve_option(const FigureInput& input, const std::string& k
 }
 
 std::optional<double> number_of_param(const RunSpec& spec, const std::string& name) {
-  const auto found = spec.params.find(name);
-  if (found == spec.params.end()) return std::nullopt;
+  const std::map<std::string, ParamValue> options = options_of(spec);
+  const auto found = options.find(name);
+  if (found == options.end()) return std::nullopt;
   if (const auto* whole = std::get_if<std::int64_t>(&found->second)) return static_cast<double>(*whole);
   if (const auto* real = std::get_if<double>(&found->second)) return *real;
   return std::nullopt;

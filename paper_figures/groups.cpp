@@ -17,7 +17,7 @@ using Attributes = std::map<std::string, std::string>;
 /// Everything of a run but its exemplar and seed, in words.
 Attributes attributes_of(const PlannedRun& run) {
   Attributes attributes;
-  for (const auto& [name, value] : run.spec.params) attributes[name] = to_string(value);
+  for (const auto& [name, value] : options_of(run.spec)) attributes[name] = to_string(value);
   const Extent size = run.spec.size;
   attributes["size"] = size.area() > 0 ? format_size(size.width, size.height) : "as exemplar";
   attributes["periodic"] = run.spec.periodic ? "yes" : "no";
@@ -60,7 +60,7 @@ std::string title_of(const Key& key, const std::set<std::string>& varying) {
 
 std::string detail_of(const PlannedRun& run) {
   std::string text = run.spec.method;
-  for (const auto& [name, value] : run.spec.params) {
+  for (const auto& [name, value] : options_of(run.spec)) {
     if (const std::string told = to_string(value); !told.empty()) text += fmt::format(", {} = {}", name, told);
   }
   if (run.spec.size.area() > 0) text += ", " + format_size(run.spec.size.width, run.spec.size.height);

@@ -35,8 +35,9 @@ std::optional<std::string> attribute(const RunSpec& spec, const std::string& key
   if (key == "periodic") return spec.periodic ? "true" : "false";
   if (key == "width") return std::to_string(spec.size.width);
   if (key == "height") return std::to_string(spec.size.height);
-  const auto param = spec.params.find(key);
-  return param == spec.params.end() ? std::nullopt : std::optional(to_string(param->second));
+  const std::map<std::string, ParamValue> options = options_of(spec);
+  const auto option = options.find(key);
+  return option == options.end() ? std::nullopt : std::optional(to_string(option->second));
 }
 
 bool answers(const SelectedRun& run, const Column& column) {
@@ -50,7 +51,7 @@ bool answers(const SelectedRun& run, const Column& column) {
 std::vector<std::string> differences(const std::vector<const SelectedRun*>& runs) {
   std::set<std::string> keys{"method", "seed", "periodic", "width", "height"};
   for (const SelectedRun* run : runs) {
-    for (const auto& [name, value] : run->spec().params) keys.insert(name);
+    for (const auto& [name, value] : options_of(run->spec())) keys.insert(name);
   }
   std::vector<std::string> differing;
   for (const std::string& key : keys) {
@@ -166,7 +167,7 @@ void check_panel(const FigureInput& input) {
   }
   std::set<std::string> params;
   for (const SelectedRun& run : input.runs) {
-    for (const auto& [name, value] : run.spec().params) params.insert(name);
+    for (const auto& [name, value] : options_of(run.spec())) params.insert(name);
   }
   std::vector<std::string_view> selectors{"fit", "note", "seed", "method", "periodic", "width", "height"};
   selectors.insert(selectors.end(), params.begin(), params.end());

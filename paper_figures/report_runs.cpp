@@ -23,7 +23,7 @@ Json run_fact(const std::string& title, const std::string& value, const std::str
 
 std::string params_text(const RunSpec& spec) {
   std::vector<std::string> parts;
-  for (const auto& [name, value] : spec.params) {
+  for (const auto& [name, value] : options_of(spec)) {
     if (const std::string told = to_string(value); !told.empty()) parts.push_back(fmt::format("{} = {}", name, told));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
@@ -62,7 +62,7 @@ Json facts_of(const ReportRun& entry) {
   Json facts = Json::array();
   facts.push_back(run_fact("Config", entry.config->title, fmt::format("#{}", config_anchor(*entry.config))));
   facts.push_back(run_fact("Method", spec.method));
-  if (!spec.params.empty()) facts.push_back(run_fact("Options", params_text(spec)));
+  if (!options_of(spec).empty()) facts.push_back(run_fact("Options", params_text(spec)));
   facts.push_back(run_fact("Exemplar", spec.exemplar, fmt::format("#{}", exemplar_anchor(spec.exemplar))));
   facts.push_back(run_fact("Size", size_text(spec, exemplar) + (spec.periodic ? ", periodic" : ", not periodic")));
   facts.push_back(run_fact("Seed", std::to_string(spec.seed)));

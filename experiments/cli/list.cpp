@@ -53,6 +53,8 @@ const char* level_name(MetricLevel level) {
       return "model";
     case MetricLevel::sample:
       return "sample";
+    case MetricLevel::frame:
+      return "frame";
     case MetricLevel::cost:
       return "cost";
   }

@@ -7,7 +7,7 @@
 
 #include "experiments/cli/command.h"
 #include "experiments/cli/table.h"
-#include "experiments/execute.h"
+#include "experiments/gpu_run.h"
 #include "experiments/metrics/metric.h"
 #include "experiments/provenance.h"
 
@@ -17,9 +17,30 @@ namespace {
 struct MeasureOptions {
   ModelOptions model;
   int samples = 8;
+  std::vector<std::string> gpu;
   std::vector<std::string> metrics;
   bool json = false;
 };
+
+/// All options of drawing on a graphics processor, when one of them is given.
+std::map<std::string, ParamValue> read_gpu_options(const std::vector<std::string>& assignments) {
+  if (assignments.empty()) return {};
+  std::map<std::string, ParamValue> given;
+  for (const std::string& assignment : assignments) given.insert(parse_param(gpu_run_options(), assignment));
+  return Params(gpu_run_options(), given).values();
+}
+
+/// What is measured when no metric is named.
+std::vector<std::string> usual_metrics(const RunSpec& spec) {
+  std::vector<std::string> names;
+  for (const MetricEntry& metric : metric_catalog()) {
+    std::string name(metric.name);
+    if (metric.identity || metric.level == MetricLevel::frame) continue;
+    if (object_to_gpu({name}, !spec.gpu.empty(), spec.periodic)) continue;
+    names.push_back(std::move(name));
+  }
+  return names;
+}
 
 RunSpec make_spec(const MeasureOptions& options, const ExemplarInfo& exemplar, const ExemplarCatalog& catalog) {
   const MethodEntry& method = find_method(options.model.method);
@@ -38,12 +59,8 @@ RunSpec make_spec(const MeasureOptions& options, const ExemplarInfo& exemplar, c
   spec.step = options.model.step;
   spec.seed = options.model.seed;
   spec.samples = options.samples;
-  spec.metrics = options.metrics;
-  if (spec.metrics.empty()) {
-    for (const MetricEntry& metric : metric_catalog()) {
-      if (!metric.identity) spec.metrics.emplace_back(metric.name);
-    }
-  }
+  spec.gpu = read_gpu_options(options.gpu);
+  spec.metrics = options.metrics.empty() ? usual_metrics(spec) : options.metrics;
   for (const std::string& name : spec.metrics) find_metric(name);
   std::sort(spec.metrics.begin(), spec.metrics.end());
   return spec;
@@ -71,18 +88,17 @@ int measure(const MeasureOptions& options, const GlobalOptions& globals) {
   const ExemplarCatalog catalog(home_folder());
   const ExemplarInfo exemplar = find_exemplar(catalog, options.model.exemplar);
   const RunSpec spec = make_spec(options, exemplar, catalog);
-  const Record record = execute(spec, catalog, nullptr);
+  const Record record = execute_run(spec, catalog, nullptr);
   if (record["status"] == "refused") {
     throw std::invalid_argument(fmt::format("{} cannot do this: {}", spec.method, record["reason"].get<std::string>()));
   }
   if (options.json) {
-    print_json({{"method", spec.method},
-                {"exemplar", spec.exemplar},
-                {"params", record["spec"]["params"]},
-                {"metrics", record["metrics"]},
-                {"id", record["id"]},
-                {"spec", record["spec"]},
-                {"time", record["time"]}});
+    Record document = {
+        {"method", spec.method},        {"exemplar", spec.exemplar}, {"params", record["spec"]["params"]},
+        {"metrics", record["metrics"]}, {"id", record["id"]},        {"spec", record["spec"]},
+        {"time", record["time"]}};
+    if (!spec.gpu.empty()) document["gpu"] = record["provenance"]["gpu"];
+    print_json(document);
     return 0;
   }
   print_metrics(record["metrics"]);
@@ -106,11 +122,19 @@ Command measure_command(CLI::App& app, const GlobalOptions& globals) {
   command->add_option("--samples", options->samples, "Samples to draw")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
+  command
+      ->add_option("--gpu", options->gpu,
+                   "NAME=VALUE, repeatable: draw the samples on a graphics processor, with this option of it "
+                   "(path, fetch, filter, window, half, supersampling, pitch, height)")
+      ->allow_extra_args(false);
   command->add_option("--metrics", options->metrics, "Comma-separated metrics (all but tests of theory)")
       ->delimiter(',')
       ->allow_extra_args(false);
   command->add_flag("--json", options->json, "Print one JSON document");
-  set_examples(*command, "  textonbench measure adsn mamurk_a_1 --samples 16 --metrics mean_error,skewness");
+  set_examples(*command,
+               "  textonbench measure adsn mamurk_a_1 --samples 16 --metrics mean_error,skewness\n"
+               "  textonbench measure texton_noise mamurk_a_1 --gpu path=compute --size 1024x1024 --samples 1 "
+               "--metrics frame_ms");
   return {command, [options, &globals] { return measure(*options, globals); }};
 }
 

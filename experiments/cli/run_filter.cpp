@@ -26,7 +26,7 @@ std::vector<Candidate> candidates_of(const Plan& plan) {
                          {"seed", std::to_string(run.spec.seed)},
                          {"size", fmt::format("{}x{}", run.spec.size.width, run.spec.size.height)},
                          {"periodic", run.spec.periodic ? "true" : "false"}}};
-    for (const auto& [name, value] : run.spec.params) candidate.traits.emplace(name, to_string(value));
+    for (const auto& [name, value] : options_of(run.spec)) candidate.traits.emplace(name, to_string(value));
     candidates.push_back(std::move(candidate));
   }
   for (const auto& [label, indices] : plan.by_label) {

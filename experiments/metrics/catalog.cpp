@@ -7,6 +7,7 @@
 #include "experiments/metrics/border_cross.h"
 #include "experiments/metrics/color_covariance.h"
 #include "experiments/metrics/cramer_von_mises.h"
+#include "experiments/metrics/frame_metrics.h"
 #include "experiments/metrics/metric.h"
 #include "experiments/metrics/model_error.h"
 #include "experiments/metrics/modulus_and_phase.h"
@@ -346,7 +347,8 @@ constexpr std::array general_metrics{
 std::span<const MetricEntry> metric_catalog() {
   static const std::vector<MetricEntry> catalog = [] {
     std::vector<MetricEntry> entries(general_metrics.begin(), general_metrics.end());
-    for (const std::span<const MetricEntry> more : {spot_identity_metrics(), spline_identity_metrics()}) {
+    for (const std::span<const MetricEntry> more :
+         {spot_identity_metrics(), spline_identity_metrics(), frame_metrics()}) {
       entries.insert(entries.end(), more.begin(), more.end());
     }
     return entries;

@@ -41,7 +41,8 @@ class SampleMetric {
   virtual double value(std::span<const double> mean_statistic) const = 0;
 };
 
-enum class MetricLevel { model, sample, cost };
+/// frame: of samples that a graphics processor draws (experiments/gpu_run.h).
+enum class MetricLevel { model, sample, cost, frame };
 enum class Better { lower, higher, nearer_zero, neither };
 
 struct MetricEntry {
@@ -63,7 +64,8 @@ struct MetricEntry {
   bool identity = false;
 };
 
-/// All metrics in the order they are listed. Cost metrics have neither function: execute.cpp measures them.
+/// All metrics in the order they are listed. Those of cost and frame have no function: execute.cpp and gpu_run.cpp
+/// measure them.
 std::span<const MetricEntry> metric_catalog();
 /// Throws std::invalid_argument naming the nearest known name.
 const MetricEntry& find_metric(std::string_view name);

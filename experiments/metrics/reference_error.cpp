@@ -27,11 +27,7 @@ double spline_variance(const SplineTexton& texton) {
 
 }  // namespace
 
-std::optional<double> reference_error(const Model& model, const Target&, const Domain& domain) {
-  const std::unique_ptr<Model> reference = model.reference();
-  if (reference == nullptr || model.spline_texton() == nullptr) return std::nullopt;
-  const Image found = model.synthesize(domain, Seed{1});
-  const Image expected = reference->synthesize(domain, Seed{1});
+double distance_in_deviations(const Image& found, const Image& expected, const SplineTexton& texton) {
   double squares = 0;
   std::int64_t count = 0;
   for (int c = 0; c < found.channels(); ++c) {
@@ -45,7 +41,14 @@ std::optional<double> reference_error(const Model& model, const Target&, const D
   }
   // Mean over the pixels that count, of the squares of all channels.
   const double pixels = std::max<double>(1, static_cast<double>(count) / found.channels());
-  return std::sqrt(squares / pixels / spline_variance(*model.spline_texton()));
+  return std::sqrt(squares / pixels / spline_variance(texton));
+}
+
+std::optional<double> reference_error(const Model& model, const Target&, const Domain& domain) {
+  const std::unique_ptr<Model> reference = model.reference();
+  if (reference == nullptr || model.spline_texton() == nullptr) return std::nullopt;
+  return distance_in_deviations(model.synthesize(domain, Seed{1}), reference->synthesize(domain, Seed{1}),
+                                *model.spline_texton());
 }
 
 }  // namespace textonbench

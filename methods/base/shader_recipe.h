@@ -44,6 +44,7 @@ struct ShaderRequest {
   ShaderFilter filter = ShaderFilter::none;
   ShaderWindow window = ShaderWindow::footprint;
   bool half_float = false;  ///< texels of 16 bits instead of 32
+  int channels = 0;         ///< only so many, the first ones; 0: all
 };
 
 /// A texture array of one to four components, zero outside its texels.

@@ -35,6 +35,20 @@ void require_fetches(int order, const ShaderRequest& request) {
   }
 }
 
+SplineTexton first_channels(const SplineTexton& texton, int count) {
+  SplineTexton part = texton;
+  for (std::size_t k = 0; k < part.coefficients.kernels.size(); ++k) {
+    const Image& kernel = texton.coefficients.kernels[k];
+    Image& kept = part.coefficients.kernels[k];
+    kept = Image(kernel.extent(), count);
+    for (int c = 0; c < count; ++c) {
+      for (int y = 0; y < kernel.height(); ++y) std::ranges::copy(kernel.row(c, y), kept.row(c, y).begin());
+    }
+  }
+  part.coefficients.mean.resize(static_cast<std::size_t>(count));
+  return part;
+}
+
 void require_shader_limits(const SplineTexton& texton, const SplineNoiseOptions& options, const ShaderRequest& request,
                            const ImpactGrid& grid) {
   if (options.kernel_at) {
@@ -220,6 +234,11 @@ void add_impacts_to(ShaderRecipe& recipe, const ImpactGrid& grid, const ShaderRe
 
 ShaderRecipe spline_noise_recipe(const SplineTexton& texton, const SplineNoiseOptions& options,
                                  const ShaderRequest& request) {
+  if (request.channels > 0 && request.channels < texton.coefficients.channels()) {
+    ShaderRequest of_part = request;
+    of_part.channels = 0;
+    return spline_noise_recipe(first_channels(texton, request.channels), options, of_part);
+  }
   const ImpactGrid grid = spline_noise_impacts(texton, options);
   require_shader_limits(texton, options, request, grid);
   const double scale = spline_noise_scale(texton, options, grid);

@@ -191,4 +191,14 @@ TEST(LatestByIdTest, PrefersTheLastSuccessOverLaterFailures) {
   EXPECT_EQ((*latest[3])["reason"], "5");
 }
 
+TEST(LatestByIdTest, ARefusalElsewhereLeavesASuccessHere) {
+  const std::vector<Record> records{make_record("a", "ok", "1"),      make_record("a", "refused", "2"),
+                                    make_record("b", "refused", "3"), make_record("b", "failed", "4"),
+                                    make_record("c", "refused", "5"), make_record("c", "ok", "6")};
+  const auto latest = latest_by_id(records, {"a", "b", "c"});
+  EXPECT_EQ((*latest[0])["reason"], "1");
+  EXPECT_EQ((*latest[1])["reason"], "3");
+  EXPECT_EQ((*latest[2])["reason"], "6");
+}
+
 }  // namespace textonbench::record_test

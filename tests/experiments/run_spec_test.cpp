@@ -55,6 +55,31 @@ TEST(RunSpecTest, JsonRoundTrips) {
   EXPECT_EQ(run_id(back), run_id(spec));
 }
 
+TEST(RunSpecTest, OptionsOfAGraphicsProcessorAreThereWhereItDraws) {
+  EXPECT_FALSE(to_json(example()).contains("gpu"));
+  RunSpec spec = example();
+  spec.gpu = {{"path", "compute"}, {"pitch", 20.0}, {"half", false}, {"supersampling", std::int64_t{1}}};
+  const Json json = to_json(spec);
+  EXPECT_EQ(json["gpu"].dump(), R"({"half":false,"path":"compute","pitch":20.0,"supersampling":1})");
+  const RunSpec back = run_spec_from_json(json);
+  EXPECT_EQ(back.gpu, spec.gpu);
+  EXPECT_EQ(run_id(back), run_id(spec));
+  EXPECT_THAT(command_line(spec),
+              HasSubstr(" --gpu half=false --gpu path=compute --gpu pitch=20 --gpu supersampling=1 "));
+  const std::map<std::string, ParamValue> options = options_of(spec);
+  EXPECT_EQ(options.at("gpu.path"), ParamValue("compute"));
+  EXPECT_EQ(options.at("order"), ParamValue(std::int64_t{3}));
+  Json wrong = json;
+  wrong["gpu"]["path"] = Json::array();
+  EXPECT_THAT(message_for(wrong), HasSubstr("gpu.path: expected"));
+}
+
+TEST(RunSpecTest, OnlyWhatAGraphicsProcessorDrawsDependsOnItsSources) {
+  const std::vector<std::string> metrics{"rme"};
+  EXPECT_NE(code_version("texton_noise", metrics, true), code_version("texton_noise", metrics, false));
+  EXPECT_EQ(code_version("texton_noise", metrics, false), code_version("texton_noise", metrics, false));
+}
+
 TEST(RunSpecTest, NamesTheBadKey) {
   const Json good = to_json(example());
   EXPECT_EQ(message_for(good), "no error");
@@ -84,8 +109,7 @@ TEST(RunSpecTest, NamesTheBadKey) {
 
 TEST(RunSpecTest, TheIdHashesSpecAndCode) {
   const RunSpec spec = example();
-  EXPECT_EQ(run_id(spec),
-            sha256(to_json(spec).dump() + "\ncode " + code_version(spec.method, spec.metrics)).substr(0, 16));
+  EXPECT_EQ(run_id(spec), sha256(to_json(spec).dump() + "\ncode " + code_version(spec)).substr(0, 16));
   EXPECT_EQ(run_id(spec).find_first_not_of("0123456789abcdef"), std::string::npos);
 }
 
@@ -102,6 +126,8 @@ TEST(RunSpecTest, TheIdChangesWithEveryFieldButTheTimeout) {
       [](RunSpec& s) { s.samples = 5; },
       [](RunSpec& s) { s.metrics.pop_back(); },
       [](RunSpec& s) { s.pictures.clear(); },
+      [](RunSpec& s) { s.gpu["path"] = "fragment"; },
+      [](RunSpec& s) { s.gpu["path"] = "compute"; },
   };
   std::set<std::string> ids{run_id(example())};
   for (const auto& change : changes) {

@@ -41,7 +41,7 @@ inline Record make_synthetic_record(const SyntheticRun& run) {
   record["pictures"] = Record::object();
   record["time"] = {
       {"wall_seconds", 0.5}, {"cpu_seconds", 0.4}, {"peak_bytes", 1000}, {"finished", "2024-01-02T03:04:05Z"}};
-  record["provenance"] = {{"version", "0.1.0"},   {"code_version", code_version(run.method, measured)},
+  record["provenance"] = {{"version", "0.1.0"},   {"code_version", code_version(run.method, measured, false)},
                           {"git_commit", "abc"},  {"git_dirty", false},
                           {"compiler", "GNU 12"}, {"cpu", run.cpu},
                           {"cores", 4},           {"threads", 2}};

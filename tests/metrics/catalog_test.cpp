@@ -34,7 +34,9 @@ TEST(MetricCatalog, NamesAndOrderAreThoseThatScriptsKnow) {
           "unlike_start_correlation", "strip_border_ratio", "cells_visited", "impacts_drawn_ratio", "fetches_per_pixel",
           "gaussian_count_mean", "gaussian_count_variance", "negative_count_part", "congruential_cell_correlation",
           "hashed_cell_correlation", "counter_cell_correlation", "cell_time_ratio", "texton_time_ratio",
-          "exemplar_patch_distance"));
+          "exemplar_patch_distance", "frame_ms", "frame_ns_per_pixel", "frame_fetches_per_second",
+          "frame_ceiling_fraction", "frame_color_ratio", "software_frame_ms", "software_ns_per_pixel",
+          "software_color_ratio", "sampler_filter_error", "supersampling_error"));
 }
 
 TEST(MetricCatalog, EveryEntryIsDescribedAndCanBeMeasuredAtItsLevel) {
