@@ -51,7 +51,7 @@ class Context {
   /// Throws GpuError with what the driver has complained of since the last call: errors of OpenGL, a lost context, and
   /// high-severity messages of its debug output. `doing` is for the message: "drawing a frame".
   void check(std::string_view doing);
-  /// Takes those complaints back without throwing: they are told in other words.
+  /// Drops those complaints, for a caller that tells them in other words.
   void forget_complaints();
 
  protected:
@@ -63,7 +63,7 @@ class Context {
   ContextInfo info_;
 
  private:
-  /// Adds what the driver tells when it is asked to complaints_.
+  /// Asks the driver, and adds to complaints_ what it tells.
   void collect_errors();
 
   std::string complaints_;

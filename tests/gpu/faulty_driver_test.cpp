@@ -75,7 +75,7 @@ class FaultyDriver : public testing::Test {
     true_integer = driver_->gl().GetIntegerv;
     error = reset_status = GL_NO_ERROR;
   }
-  /// Faults of the driver's leave nothing behind.
+  /// Faults leave nothing behind in the driver.
   void TearDown() override {
     if (driver_) {
       EXPECT_NO_THROW(driver_->check("leaving a test"));
@@ -197,13 +197,14 @@ TEST_F(FaultyDriver, AUniformOfAnotherTypeIsAnError) {
   side->second = 1.0F;
   EXPECT_THAT(message(recipe), AllOf(StartsWith("setting the uniforms of texton_noise on a faulty driver"),
                                      HasSubstr("GL_INVALID_OPERATION")));
-  driver_->forget_complaints();  // its own debug output has told the driver
+  driver_->forget_complaints();  // its debug output goes to the true context
 }
 
 TEST_F(FaultyDriver, EveryStageThatDoesNotCompileIsNamedWithItsLine) {
   const auto compiling = [&](GLenum stage) -> std::string {
     try {
-      Program(*driver_, {{stage, {"#version 410 core\n#line 1 0\n\nvoid main() { wrong; }\n", {"small.glsl"}}}});
+      const Program program(*driver_,
+                            {{stage, {"#version 410 core\n#line 1 0\n\nvoid main() { wrong; }\n", {"small.glsl"}}}});
     } catch (const GpuError& told) {
       return told.what();
     }
@@ -222,7 +223,7 @@ TEST_F(FaultyDriver, ShadersThatDoNotLinkAreToldWithTheLog) {
   const ShaderSource fragment{
       "#version 410 core\nvec4 missing();\nout vec4 color;\nvoid main() { color = missing(); }\n", {}};
   try {
-    Program(*driver_, {{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}});
+    const Program program(*driver_, {{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}});
     FAIL() << "linked";
   } catch (const GpuError& told) {
     EXPECT_THAT(told.what(), AllOf(StartsWith("the shaders do not link:\n"), HasSubstr("missing")));
