@@ -8,6 +8,7 @@
 
 #include "experiments/progress.h"
 #include "gpu/fetch_ceiling.h"
+#include "gpu/texture.h"
 
 namespace textonbench {
 namespace {
@@ -98,6 +99,7 @@ FrameTimes frame_times(std::vector<double> milliseconds) {
 }
 
 FrameTiming time_frames(Context& context, const ShaderRecipe& recipe, const FrameTimingOptions& options) {
+  require_drawable(context, options.frame.size);
   const double samples = covered_samples(options.frame);
   const auto pixels = static_cast<double>(options.frame.size.area());
   const std::vector<double> times = time_recipe(context, recipe, options, method_share);

@@ -36,11 +36,24 @@ std::string_view error_name(GLenum error) {
     case GL_INVALID_FRAMEBUFFER_OPERATION:
       return "GL_INVALID_FRAMEBUFFER_OPERATION";
     case GL_OUT_OF_MEMORY:
-      return "GL_OUT_OF_MEMORY (try smaller frames or float16 texels)";
+      return "GL_OUT_OF_MEMORY (take smaller frames, or texels of 16 bits)";
     case GL_CONTEXT_LOST:
       return "GL_CONTEXT_LOST (the driver was reset: run it again, with smaller frames if it happens again)";
     default:
       return "an unknown error";
+  }
+}
+
+std::string_view reset_reason(GLenum status) {
+  switch (status) {
+    case GL_GUILTY_CONTEXT_RESET:
+      return "the context is lost by what it was asked for, such as a frame that takes longer than the driver allows "
+             "(take smaller frames)";
+    case GL_INNOCENT_CONTEXT_RESET:
+      return "the context is lost by what another program did (run it again)";
+    default:
+      return "the context is lost, the driver does not know why (run it again, with smaller frames if it happens "
+             "again)";
   }
 }
 
@@ -93,7 +106,7 @@ void Context::load(const std::function<void*(const char*)>& address_of) {
   gl_.GetString = reinterpret_cast<decltype(gl_.GetString)>(address_of("glGetString"));
   gl_.GetIntegerv = reinterpret_cast<decltype(gl_.GetIntegerv)>(address_of("glGetIntegerv"));
   if (gl_.GetString == nullptr || gl_.GetIntegerv == nullptr) {
-    throw GpuError("the driver gives no glGetString");
+    throw GpuError("the driver gives no glGetString: install it anew");
   }
   info_.renderer = text_of(gl_, GL_RENDERER);
   info_.vendor = text_of(gl_, GL_VENDOR);
@@ -102,13 +115,13 @@ void Context::load(const std::function<void*(const char*)>& address_of) {
   gl_.GetIntegerv(GL_MAJOR_VERSION, &info_.major);
   gl_.GetIntegerv(GL_MINOR_VERSION, &info_.minor);
   if (!info_.at_least(4, 1)) {
-    throw GpuError(fmt::format("{} has OpenGL {}: textonbench needs 4.1 or newer; --context osmesa draws in software",
-                               info_.renderer, info_.version));
+    throw GpuError(fmt::format("{} has OpenGL {}: expected 4.1 or newer", info_.renderer, info_.version));
   }
   const auto find = [&](auto& function, const char* name) {
     function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(address_of(name));
     if (function == nullptr) {
-      throw GpuError(fmt::format("{} gives no function {}", info_.renderer, name));
+      throw GpuError(fmt::format("{} has OpenGL {} but gives no function {}: install its driver anew", info_.renderer,
+                                 info_.version, name));
     }
   };
 #define TEXTONBENCH_FIND(name) find(gl_.name, "gl" #name);
@@ -119,14 +132,21 @@ void Context::load(const std::function<void*(const char*)>& address_of) {
     gl_.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
     gl_.DebugMessageCallback(collect_message, &complaints_);
   }
+  if (info_.at_least(4, 5)) {
+    TEXTONBENCH_NEWEST_GL_FUNCTIONS(TEXTONBENCH_FIND)
+  }
 #undef TEXTONBENCH_FIND
 }
 
-void Context::check(std::string_view doing) {
+void Context::collect_errors() {
+  const GLenum reset = gl_.GetGraphicsResetStatus == nullptr ? GL_NO_ERROR : gl_.GetGraphicsResetStatus();
+  if (reset != GL_NO_ERROR) {
+    complain(complaints_, reset_reason(reset));
+  }
   constexpr int most = 16;  // a lost context gives errors without end
   for (int i = 0; i < most; ++i) {
     const GLenum error = gl_.GetError();
-    if (error == GL_NO_ERROR) {
+    if (error == GL_NO_ERROR || (error == GL_CONTEXT_LOST && reset != GL_NO_ERROR)) {
       break;
     }
     complain(complaints_, error_name(error));
@@ -134,6 +154,15 @@ void Context::check(std::string_view doing) {
       break;
     }
   }
+}
+
+void Context::forget_complaints() {
+  collect_errors();
+  complaints_.clear();
+}
+
+void Context::check(std::string_view doing) {
+  collect_errors();
   if (!complaints_.empty()) {
     std::string complaints;
     complaints.swap(complaints_);
@@ -149,10 +178,13 @@ std::unique_ptr<Context> make_context() {
     try {
       return it.make();
     } catch (const GpuError& error) {
-      complain(reasons, fmt::format("{}: {}", it.name, error.what()));
+      reasons += fmt::format("  {}: {}\n", it.name, error.what());
     }
   }
-  throw GpuError(fmt::format("no OpenGL here; the processor draws the same without --renderer gpu. {}", reasons));
+  throw GpuError(
+      fmt::format("no OpenGL here:\n{}Do what one of these says; textonbench synth without --renderer gpu "
+                  "draws the same on the processor and needs none of them",
+                  reasons));
 }
 
 std::string_view context_name(ContextKind kind) { return named(kind).name; }

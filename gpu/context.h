@@ -48,9 +48,11 @@ class Context {
   const GlFunctions& gl() const { return gl_; }
   const ContextInfo& info() const { return info_; }
 
-  /// Throws GpuError with what the driver has complained of since the last call: errors of OpenGL and high-severity
-  /// messages of its debug output. `doing` is for the message: "drawing a frame".
+  /// Throws GpuError with what the driver has complained of since the last call: errors of OpenGL, a lost context, and
+  /// high-severity messages of its debug output. `doing` is for the message: "drawing a frame".
   void check(std::string_view doing);
+  /// Drops those complaints, for a caller that tells them in other words.
+  void forget_complaints();
 
  protected:
   explicit Context(ContextKind kind) { info_.kind = kind; }
@@ -61,6 +63,9 @@ class Context {
   ContextInfo info_;
 
  private:
+  /// Asks the driver, and adds to complaints_ what it tells.
+  void collect_errors();
+
   std::string complaints_;
 };
 

@@ -19,7 +19,15 @@ bool lists_extension(const char* extensions, std::string_view wanted) {
   return text.find(fmt::format(" {} ", wanted)) != std::string::npos;
 }
 
-std::string hexadecimal(EGLint code) { return fmt::format("EGL error {:#x}", static_cast<unsigned>(code)); }
+std::string error_text(EGLint code) {
+  constexpr std::array<std::string_view, 15> names{
+      "no error told",     "EGL_NOT_INITIALIZED", "EGL_BAD_ACCESS",        "EGL_BAD_ALLOC",
+      "EGL_BAD_ATTRIBUTE", "EGL_BAD_CONFIG",      "EGL_BAD_CONTEXT",       "EGL_BAD_CURRENT_SURFACE",
+      "EGL_BAD_DISPLAY",   "EGL_BAD_MATCH",       "EGL_BAD_NATIVE_PIXMAP", "EGL_BAD_NATIVE_WINDOW",
+      "EGL_BAD_PARAMETER", "EGL_BAD_SURFACE",     "EGL_CONTEXT_LOST"};
+  const auto index = static_cast<std::size_t>(code - EGL_SUCCESS);
+  return index < names.size() ? std::string(names[index]) : fmt::format("EGL error {:#x}", static_cast<unsigned>(code));
+}
 
 /// What is called of EGL.
 struct EglFunctions {
@@ -103,8 +111,11 @@ class EglContext final : public Context {
       }
       reasons.push_back(fmt::format("{}: {}", candidate.name, reason));
     }
-    throw GpuError(fmt::format("EGL has no device with OpenGL 4.1 ({}); Mesa's drivers are in libgl1-mesa-dri",
-                               reasons.empty() ? "none at all" : fmt::format("{}", fmt::join(reasons, "; "))));
+    throw GpuError(
+        fmt::format("EGL has no device with OpenGL 4.1 ({}): install the driver of the graphics processor with its EGL "
+                    "library, or Mesa's (Debian packages libegl-mesa0 and libgl1-mesa-dri); --context osmesa does "
+                    "without EGL",
+                    reasons.empty() ? "none at all" : fmt::format("{}", fmt::join(reasons, "; "))));
   }
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;
@@ -113,7 +124,7 @@ class EglContext final : public Context {
   void make_current() override {
     egl_.bind_api(EGL_OPENGL_API);
     if (egl_.make_current(display_, surface_, surface_, context_) != EGL_TRUE) {
-      throw GpuError(fmt::format("EGL does not make its context current: {}", hexadecimal(egl_.get_error())));
+      throw GpuError(fmt::format("EGL does not make its context current: {}", error_text(egl_.get_error())));
     }
   }
 
@@ -122,7 +133,7 @@ class EglContext final : public Context {
   std::string open(EGLDisplay display) {
     display_ = display;
     if (egl_.initialize(display_, nullptr, nullptr) != EGL_TRUE) {
-      return "does not start: " + hexadecimal(egl_.get_error());
+      return "does not start: " + error_text(egl_.get_error());
     }
     std::string reason = create();
     if (reason.empty()) {
@@ -154,31 +165,35 @@ class EglContext final : public Context {
       }
     }
     for (const auto& [major, minor] : {std::pair{4, 6}, {4, 5}, {4, 4}, {4, 3}, {4, 2}, {4, 1}, {3, 3}}) {
-      const std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION,
-                                             major,
-                                             EGL_CONTEXT_MINOR_VERSION,
-                                             minor,
-                                             EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                             EGL_CONTEXT_OPENGL_DEBUG,
-                                             EGL_TRUE,
-                                             EGL_NONE};
-      context_ = egl_.create_context(display_, config, EGL_NO_CONTEXT, attributes.data());
-      if (context_ != EGL_NO_CONTEXT) {
+      // Not every driver can tell when it was reset.
+      if (create_version(config, major, minor, true) || create_version(config, major, minor, false)) {
         break;
       }
     }
     if (context_ == EGL_NO_CONTEXT) {
-      return "no context of OpenGL: " + hexadecimal(egl_.get_error());
+      return "no context of OpenGL: " + error_text(egl_.get_error());
     }
     if (!is_surfaceless) {
       constexpr std::array<EGLint, 5> size{EGL_WIDTH, 1, EGL_HEIGHT, 1, EGL_NONE};
       surface_ = egl_.create_pbuffer(display_, config, size.data());
       if (surface_ == EGL_NO_SURFACE) {
-        return "no surface: " + hexadecimal(egl_.get_error());
+        return "no surface: " + error_text(egl_.get_error());
       }
     }
     return {};
+  }
+
+  bool create_version(EGLConfig config, EGLint major, EGLint minor, bool tells_resets) {
+    std::vector<EGLint> attributes{EGL_CONTEXT_MAJOR_VERSION,       major,
+                                   EGL_CONTEXT_MINOR_VERSION,       minor,
+                                   EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                   EGL_CONTEXT_OPENGL_DEBUG,        EGL_TRUE};
+    if (tells_resets) {
+      attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
+    }
+    attributes.push_back(EGL_NONE);
+    context_ = egl_.create_context(display_, config, EGL_NO_CONTEXT, attributes.data());
+    return context_ != EGL_NO_CONTEXT;
   }
 
   /// The display stays open: another context of this program may use it, and EGL counts no users.

@@ -24,10 +24,14 @@ namespace textonbench {
 /// Of OpenGL 4.3 and newer; null before.
 #define TEXTONBENCH_NEW_GL_FUNCTIONS(X) X(BindImageTexture) X(DebugMessageCallback) X(DispatchCompute) X(MemoryBarrier)
 
+/// Of OpenGL 4.5 and newer; null before.
+#define TEXTONBENCH_NEWEST_GL_FUNCTIONS(X) X(GetGraphicsResetStatus)
+
 struct GlFunctions {
 #define TEXTONBENCH_MEMBER(name) decltype(&gl##name) name = nullptr;  // NOLINT(bugprone-macro-parentheses)
   TEXTONBENCH_GL_FUNCTIONS(TEXTONBENCH_MEMBER)
   TEXTONBENCH_NEW_GL_FUNCTIONS(TEXTONBENCH_MEMBER)
+  TEXTONBENCH_NEWEST_GL_FUNCTIONS(TEXTONBENCH_MEMBER)
 #undef TEXTONBENCH_MEMBER
 };
 

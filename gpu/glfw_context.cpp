@@ -23,10 +23,12 @@ class GlfwContext final : public Context {
     hint(GLFW_CONTEXT_VERSION_MINOR, 1);
     hint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     hint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
+    hint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);  // where there is such a thing
     window_ =
         library_.function<decltype(glfwCreateWindow)>("glfwCreateWindow")(16, 16, "textonbench", nullptr, nullptr);
     if (window_ == nullptr) {
-      throw GpuError(fmt::format("GLFW makes no window with OpenGL 4.1: {}", reason()));
+      throw GpuError(fmt::format(
+          "GLFW makes no window with OpenGL 4.1: {}; --context egl and --context osmesa need no display", reason()));
     }
     try {
       make_current();

@@ -34,7 +34,8 @@ class OsmesaContext final : public Context {
                                             0};
     context_ = library_.function<CreateContext>("OSMesaCreateContextAttribs")(attributes.data(), nullptr);
     if (context_ == nullptr) {
-      throw GpuError("OSMesa makes no context of OpenGL 4.1");
+      throw GpuError(
+          "OSMesa makes no context of OpenGL 4.1, as where Mesa is old or has no LLVM: install a newer libosmesa6");
     }
     try {
       make_current();

@@ -78,6 +78,7 @@ Program::Program(Context& context, const std::vector<ShaderStage>& stages) : con
       throw GpuError(fmt::format("the shaders do not link:\n{}", program_log(gl, name_)));
     }
   } catch (...) {
+    context.forget_complaints();  // the log says more
     gl.DeleteProgram(name_);
     throw;
   }
@@ -106,8 +107,9 @@ void Program::set(const std::string& uniform, const ShaderValue& value) {
 
 void Program::require_all_set(std::string_view recipe) const {
   if (!unset_.empty()) {
-    throw GpuError(
-        fmt::format("the recipe of {} does not set what its shader reads: {}", recipe, fmt::join(unset_, ", ")));
+    throw GpuError(fmt::format(
+        "the recipe of {} does not set what its shader reads: {}; add it to its uniforms, textures or words", recipe,
+        fmt::join(unset_, ", ")));
   }
 }
 

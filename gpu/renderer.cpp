@@ -68,6 +68,7 @@ Renderer::Renderer(Context& context, const ShaderRecipe& recipe, ShaderPath path
   }
   context.make_current();
   resources_ = std::make_unique<Resources>(context, recipe, path);
+  context.check("compiling the shader of " + recipe.shader);
   Program& program = resources_->program;
   program.use();
   for (const ShaderTexture& texture : recipe.textures) {
@@ -85,7 +86,7 @@ Renderer::Renderer(Context& context, const ShaderRecipe& recipe, ShaderPath path
     program.set("channels_0", std::int32_t{0});
     program.set("channels_1", std::int32_t{1});
   }
-  context.check("uploading the recipe of " + recipe.shader);
+  context.check("setting the uniforms of " + recipe.shader);
 }
 
 Renderer::~Renderer() {
@@ -167,7 +168,7 @@ Image Renderer::draw(const Frame& frame) {
   prepare(frame);
   submit(frame.size);
   Image image = resources_->frame.read(channels_);
-  context_.check("drawing a frame");
+  context_.check(fmt::format("drawing a frame of {}x{} pixels", frame.size.width, frame.size.height));
   return image;
 }
 
@@ -193,7 +194,7 @@ std::vector<double> Renderer::time(const Frame& frame, int warm_up, int count) {
     milliseconds.push_back(1e-6 * static_cast<double>(nanoseconds));
   }
   gl.DeleteQueries(count, queries.data());
-  context_.check("timing frames");
+  context_.check(fmt::format("timing frames of {}x{} pixels", frame.size.width, frame.size.height));
   return milliseconds;
 }
 

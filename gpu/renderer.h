@@ -31,15 +31,16 @@ struct Frame {
 class Renderer {
  public:
   /// Compiles and uploads. `context` is to live longer. Throws GpuError for a shader that does not compile (with the
-  /// log, in the files' own lines), a texture beyond the limits, a uniform or sampler of the shader that the recipe
-  /// does not set or sets without need, and a path that the context has not.
+  /// log, in the files' own lines), a texture beyond the driver's limits or memory, and a path that the context has
+  /// not.
   Renderer(Context& context, const ShaderRecipe& recipe, ShaderPath path);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Throws GpuError, also for a uniform or sampler that the shader reads and the recipe does not set, or
-  /// std::invalid_argument for a frame that is empty or farther than 2^20 pixels from the recipe's base.
+  /// Throws GpuError for a frame beyond the driver's limits or memory, for a uniform or sampler that the shader reads
+  /// and the recipe does not set, and for a context that was lost; std::invalid_argument for a frame that is empty or
+  /// farther than 2^20 pixels from the recipe's base.
   Image draw(const Frame& frame);
 
   /// Milliseconds of the graphics processor for each of `count` frames, by timer queries, after `warm_up` others.

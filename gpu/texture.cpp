@@ -18,6 +18,8 @@ GLint limit(const Context& context, GLenum which) {
   return value;
 }
 
+std::string megabytes(double bytes) { return fmt::format("{:.4g} MB", 1e-6 * bytes); }
+
 struct TexelFormat {
   GLint internal;
   GLenum layout;
@@ -39,9 +41,11 @@ void require_texels(const Context& context, const ShaderTexture& texture) {
   const GLint most = limit(context, GL_MAX_TEXTURE_SIZE);
   const GLint most_layers = limit(context, GL_MAX_ARRAY_TEXTURE_LAYERS);
   if (texture.size.width > most || texture.size.height > most || texture.layers > most_layers) {
-    throw GpuError(fmt::format("texture {} of {}x{} texels and {} layers: {} takes at most {} a side and {} layers",
-                               texture.sampler, texture.size.width, texture.size.height, texture.layers,
-                               context.info().renderer, most, most_layers));
+    throw GpuError(
+        fmt::format("texture {} of {}x{} texels and {} layers: {} takes at most {} a side and {} layers; take "
+                    "smaller or fewer kernels",
+                    texture.sampler, texture.size.width, texture.size.height, texture.layers, context.info().renderer,
+                    most, most_layers));
   }
   for (std::size_t l = 0; l < texture.levels.size(); ++l) {
     const auto expected = static_cast<std::size_t>(std::max(1, texture.size.width >> l)) *
@@ -93,11 +97,26 @@ void set_filter(const Context& context, const ShaderTexture& texture) {
 
 }  // namespace
 
-Texture::Texture(Context& context, const ShaderTexture& texture) : context_(&context), target_(GL_TEXTURE_2D_ARRAY) {
+void require_drawable(const Context& context, Extent size) {
+  std::array<GLint, 2> most{};
+  context.gl().GetIntegerv(GL_MAX_VIEWPORT_DIMS, most.data());
+  for (GLint& side : most) {
+    side = std::min(side, limit(context, GL_MAX_TEXTURE_SIZE));
+  }
+  if (size.width > most[0] || size.height > most[1]) {
+    throw GpuError(fmt::format("frame of {}x{} pixels: {} draws at most {}x{}; take a smaller one, or the processor",
+                               size.width, size.height, context.info().renderer, most[0], most[1]));
+  }
+}
+
+Texture::Texture(Context& context, GLenum target) : context_(&context), target_(target) {
+  context.gl().GenTextures(1, &name_);
+  context.gl().BindTexture(target_, name_);
+}
+
+Texture::Texture(Context& context, const ShaderTexture& texture) : Texture(context, GL_TEXTURE_2D_ARRAY) {
   require_texels(context, texture);
   const GlFunctions& gl = context.gl();
-  gl.GenTextures(1, &name_);
-  gl.BindTexture(target_, name_);
   const TexelFormat format = texel_format(texture);
   gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
   for (std::size_t l = 0; l < texture.levels.size(); ++l) {
@@ -111,22 +130,28 @@ Texture::Texture(Context& context, const ShaderTexture& texture) : context_(&con
   gl.TexParameteri(target_, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
   gl.TexParameteri(target_, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
   set_filter(context, texture);
+  std::size_t numbers = 0;
+  for (const std::vector<float>& level : texture.levels) {
+    numbers += level.size();
+  }
+  context.check(fmt::format("making the texture {} of {}x{} texels, {} layers and {} levels ({})", texture.sampler,
+                            texture.size.width, texture.size.height, texture.layers, texture.levels.size(),
+                            megabytes((texture.half_float ? 2.0 : 4.0) * static_cast<double>(numbers))));
 }
 
-Texture::Texture(Context& context, const ShaderWords& words) : context_(&context), target_(GL_TEXTURE_BUFFER) {
+Texture::Texture(Context& context, const ShaderWords& words) : Texture(context, GL_TEXTURE_BUFFER) {
   const GlFunctions& gl = context.gl();
   const GLint most = limit(context, GL_MAX_TEXTURE_BUFFER_SIZE);
   if (words.words.empty() || words.words.size() > static_cast<std::size_t>(most)) {
-    throw GpuError(fmt::format("{} words in {}: {} takes 1 to {}", words.words.size(), words.sampler,
-                               context.info().renderer, most));
+    throw GpuError(fmt::format("{} words in {}: {} takes 1 to {}; take smaller or fewer kernels", words.words.size(),
+                               words.sampler, context.info().renderer, most));
   }
   gl.GenBuffers(1, &buffer_);
   gl.BindBuffer(GL_TEXTURE_BUFFER, buffer_);
-  gl.BufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(words.words.size() * sizeof(std::uint32_t)),
-                words.words.data(), GL_STATIC_DRAW);
-  gl.GenTextures(1, &name_);
-  gl.BindTexture(target_, name_);
+  const std::size_t bytes = words.words.size() * sizeof(std::uint32_t);
+  gl.BufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(bytes), words.words.data(), GL_STATIC_DRAW);
   gl.TexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, buffer_);
+  context.check(fmt::format("making the words {} ({})", words.sampler, megabytes(static_cast<double>(bytes))));
 }
 
 Texture::Texture(Texture&& other) noexcept
@@ -161,11 +186,7 @@ void FrameTarget::resize(Extent size) {
   if (size == size_) {
     return;
   }
-  const GLint most = limit(context_, GL_MAX_TEXTURE_SIZE);
-  if (size.width > most || size.height > most) {
-    throw GpuError(fmt::format("frame of {}x{} pixels: {} draws at most {} a side", size.width, size.height,
-                               context_.info().renderer, most));
-  }
+  require_drawable(context_, size);
   release();
   const GlFunctions& gl = context_.gl();
   gl.GenTextures(static_cast<GLsizei>(textures_.size()), textures_.data());
@@ -181,10 +202,12 @@ void FrameTarget::resize(Extent size) {
     targets.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(targets.size()));
     gl.FramebufferTexture2D(GL_FRAMEBUFFER, targets.back(), GL_TEXTURE_2D, texture, 0);
   }
-  context_.check(fmt::format("making a frame of {}x{} pixels", size.width, size.height));
+  const double bytes = 4.0 * sizeof(float) * static_cast<double>(size.area()) * static_cast<double>(textures_.size());
+  context_.check(fmt::format("making a frame of {}x{} pixels ({})", size.width, size.height, megabytes(bytes)));
   gl.DrawBuffers(static_cast<GLsizei>(targets.size()), targets.data());
   if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-    throw GpuError(fmt::format("{} does not draw to float32 textures", context_.info().renderer));
+    throw GpuError(fmt::format("{} does not draw to float32 textures: take another --context, or the processor",
+                               context_.info().renderer));
   }
   size_ = size;
 }

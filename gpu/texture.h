@@ -9,9 +9,13 @@
 
 namespace textonbench {
 
+/// Throws GpuError for a frame larger than the driver draws, before anything of it is made.
+void require_drawable(const Context& context, Extent size);
+
 class Texture {
  public:
-  /// Throws GpuError for a size beyond the driver's limits and std::invalid_argument for texels that do not fit it.
+  /// Throws GpuError for a size beyond the driver's limits or memory, and std::invalid_argument for texels that do not
+  /// fit it.
   Texture(Context& context, const ShaderTexture& texture);
   Texture(Context& context, const ShaderWords& words);
   Texture(Texture&& other) noexcept;
@@ -21,6 +25,9 @@ class Texture {
   void bind(GLuint unit) const;
 
  private:
+  /// A name, which the destructor deletes also where the rest of a constructor throws.
+  Texture(Context& context, GLenum target);
+
   Context* context_;
   GLenum target_;
   GLuint name_ = 0;
@@ -35,7 +42,7 @@ class FrameTarget {
   FrameTarget(const FrameTarget&) = delete;
   FrameTarget& operator=(const FrameTarget&) = delete;
 
-  /// Throws GpuError for a size beyond the driver's limits.
+  /// Throws GpuError for a size beyond the driver's limits or memory.
   void resize(Extent size);
   void bind(bool as_images) const;
   Image read(int channels) const;

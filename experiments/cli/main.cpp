@@ -3,6 +3,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <stdexcept>
 #include <vector>
 
@@ -73,6 +74,12 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    fmt::print(
+        stderr,
+        "textonbench: error: this machine has not the memory: take a smaller --size, or fewer --threads or --jobs; "
+        "synth writes a large window of the plane band by band to an .exr\n");
+    return unusable_input;
   } catch (const std::exception& error) {
     fmt::print(stderr, "textonbench: error: {}\n", error.what());
     return unusable_input;

@@ -29,10 +29,12 @@ pid_t start_program(const std::vector<std::string>& arguments, const Surrounding
   unsetenv("TEXTONBENCH_DATA");
   setenv("TEXTONBENCH_HOME", TEXTONBENCH_SOURCE_DIR, 1);
   for (const auto& [name, value] : surroundings.environment) setenv(name.c_str(), value.c_str(), 1);
-  if (surroundings.largest_file > 0) {
-    const rlimit limit{surroundings.largest_file, surroundings.largest_file};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
+  const auto hold_to = [](auto resource, std::size_t most) {
+    const rlimit limit{most, most};
+    if (most > 0) setrlimit(resource, &limit);
+  };
+  hold_to(RLIMIT_FSIZE, surroundings.largest_file);
+  hold_to(RLIMIT_AS, surroundings.most_memory);
   std::vector<std::string> words = arguments;
   words.insert(words.begin(), TEXTONBENCH_PROGRAM);
   std::vector<char*> pointers;

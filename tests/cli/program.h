@@ -19,6 +19,7 @@ struct Surroundings {
   std::filesystem::path folder;  ///< working folder; standard output and error are kept here too
   std::map<std::string, std::string> environment = {};
   std::size_t largest_file = 0;  ///< bytes that a file may have; 0: no limit
+  std::size_t most_memory = 0;   ///< bytes of addresses that the program may take; 0: no limit
 };
 
 /// Starts the program with these arguments.

@@ -1,6 +1,8 @@
 // Pictures too large to be drawn at once.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <memory>
 
 #include "experiments/execute.h"
@@ -8,6 +10,7 @@
 #include "methods/base/image_io.h"
 #include "methods/method.h"
 #include "tests/cli/program.h"
+#include "tests/sanitizer.h"
 #include "tests/temporary_folder.h"
 
 namespace textonbench::synth_test {
@@ -39,6 +42,17 @@ TEST(SynthTest, ALargeWindowIsDrawnInBandsOfOneField) {
     }
   }
   EXPECT_GT(variance, 0.01);
+}
+
+TEST(SynthTest, MemoryThatIsNotThereIsToldAndLeavesNoFile) {
+  if (sanitized) GTEST_SKIP() << "a sanitizer reserves terabytes of addresses";
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(
+      {"synth", "texton_noise", "white_noise", "--threads", "2", "--size", "60000x60000", "-o", "large.png"},
+      {.folder = folder.path(), .most_memory = std::size_t{8} << 30});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, testing::AllOf(testing::HasSubstr("has not the memory"), testing::HasSubstr("--size")));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "large.png"));
 }
 
 }  // namespace textonbench::synth_test

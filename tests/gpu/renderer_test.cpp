@@ -1,10 +1,14 @@
 #include "gpu/renderer.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "gpu/shader_source.h"
 
@@ -28,6 +32,11 @@ class RendererTest : public testing::TestWithParam<ShaderPath> {
       GTEST_SKIP() << error.what();
     }
     if (GetParam() == ShaderPath::compute && !context_->info().compute()) GTEST_SKIP() << "no compute shaders";
+  }
+  void TearDown() override {
+    if (context_) {
+      EXPECT_NO_THROW(context_->check("leaving a test"));
+    }
   }
   Image draw(const Frame& frame, const ShaderRecipe& recipe) {
     return Renderer(*context_, recipe, GetParam()).draw(frame);
@@ -114,15 +123,27 @@ TEST_P(RendererTest, TimesAreOfEachFrame) {
   }
 }
 
+/// The number of the first line of a file that has that word, from 1.
+int line_of(const std::string& word, const std::string& file) {
+  const std::string& text = shader_files().at(file);
+  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<long>(text.find(word)), '\n'));
+}
+
+/// Of the file that is compiled, also below its includes, of those that it includes, and of the recipe's.
 TEST_P(RendererTest, ALogNamesTheFileAndItsLine) {
-  ShaderRecipe recipe = plane_probe();
-  recipe.defines = {{"is_inside", "1 +"}};
-  try {
-    draw({.size = {8, 8}}, recipe);
-    FAIL() << "compiled";
-  } catch (const GpuError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("does not compile"));
-    EXPECT_THAT(error.what(), HasSubstr("plane_probe.glsl:8"));
+  const std::string stage = GetParam() == ShaderPath::compute ? "compute" : "fragment";
+  const std::vector<std::pair<std::string, std::string>> words{
+      {"is_inside =", "plane_probe.glsl"}, {"share =", stage + ".glsl"}, {"depth =", "frame.glsl"}};
+  for (const auto& [word, file] : words) {
+    ShaderRecipe recipe = plane_probe();
+    recipe.defines = {{word.substr(0, word.find(' ')), "1 +"}};
+    try {
+      draw({.size = {8, 8}}, recipe);
+      FAIL() << "compiled";
+    } catch (const GpuError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("the " + stage + " shader does not compile"));
+      EXPECT_THAT(error.what(), HasSubstr(fmt::format("{}:{}", file, line_of(word, file))));
+    }
   }
 }
 
