@@ -39,9 +39,11 @@ View raster_view(ivec2 i) {
 View ground_view(vec2 pixel, float side) {
   vec2 offset = pixel - 0.5 * (vec2(frame_size) - 1.0);
   float depth = camera.y * camera.z + offset.y * camera.w;
-  float scale = camera.x / max(depth, 1.0);
+  // Samples of a pixel that is covered are at depths above 1/2.
+  float seen = max(depth, 0.5);
+  float scale = camera.x / seen;
   vec2 right = vec2(scale, 0.0);
-  vec2 down = scale / max(depth, 1.0) * vec2(-offset.x * camera.w, camera.y);
+  vec2 down = scale / seen * vec2(-offset.x * camera.w, camera.y);
   vec2 position = scale * vec2(offset.x, offset.y * camera.z - camera.y * camera.w) * 1024.0;
   vec2 whole = floor(position);
   // The fractions of both terms carry into the whole.
@@ -51,9 +53,11 @@ View ground_view(vec2 pixel, float side) {
   return View(covered, point, mat2(right * side, down * side));
 }
 
-// Sample (i, j) of a pixel.
+// Sample (i, j) of a pixel, which is covered as its center is.
 View view_of(ivec2 pixel, ivec2 sample_index) {
   if (!is_ground) return raster_view(pixel * supersampling + sample_index);
   float side = 1.0 / float(supersampling);
-  return ground_view(vec2(pixel) + (vec2(sample_index) + 0.5) * side - 0.5, side);
+  View view = ground_view(vec2(pixel) + (vec2(sample_index) + 0.5) * side - 0.5, side);
+  view.covered = ground_view(vec2(pixel), 1.0).covered;
+  return view;
 }

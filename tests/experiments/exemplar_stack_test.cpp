@@ -142,7 +142,7 @@ TEST(ExecuteStackTest, MetricsAndPicturesServeStacks) {
     spec.size = {96, 80};
     spec.periodic = false;
     for (const MetricEntry& metric : metric_catalog()) {
-      if (!metric.identity) spec.metrics.emplace_back(metric.name);
+      if (!metric.identity && metric.level != MetricLevel::frame) spec.metrics.emplace_back(metric.name);
     }
     for (const PictureEntry& picture : picture_catalog()) {
       if (picture.name != "sample_3") spec.pictures.emplace_back(picture.name);

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "experiments/gpu_run.h"
+#include "experiments/metrics/metric.h"
 #include "experiments/plan.h"
 #include "tests/experiments/exemplar_home.h"
 

@@ -207,7 +207,8 @@ TEST_F(PlanTest, GroupsOfMetricsStandForTheirLevel) {
   };
   const auto identities = std::ranges::count(metric_catalog(), true, &MetricEntry::identity);
   EXPECT_EQ(metrics("\"@identity\"").size(), identities);
-  EXPECT_EQ(metrics("\"@all\"").size() + identities, metric_catalog().size());
+  const auto of_frames = std::ranges::count(metric_catalog(), MetricLevel::frame, &MetricEntry::level);
+  EXPECT_EQ(metrics("\"@all\"").size() + identities + of_frames, metric_catalog().size());
   EXPECT_THAT(metrics("[\"@model\"]"),
               ElementsAre("kept_variance", "kernel_kurtosis", "local_kurtosis_greatest", "local_kurtosis_least",
                           "ot_distance", "poisson_impacts", "predicted_kurtosis", "rme", "rme_corrected", "rme_printed",

@@ -61,7 +61,7 @@ TEST_F(GpuRunTest, SamplesAreThoseOfTheProcessor) {
   const Record sample = run(spec);
   EXPECT_FALSE(sample["provenance"].contains("gpu"));
   const auto picture = [&](const Record& record) {
-    return read_image(folder_.path() / record["pictures"]["sample"]["file"].get<std::string>());
+    return read_image(folder_.path() / record["pictures"]["sample"]["file"].get<std::string>()).image;
   };
   const Image a = picture(frame), b = picture(sample);
   ASSERT_EQ(a.extent(), b.extent());

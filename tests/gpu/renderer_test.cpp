@@ -106,6 +106,19 @@ TEST_P(RendererTest, GroundIsThatOfTheProcessor) {
   EXPECT_LT(covered, 64 * 48);
 }
 
+TEST_P(RendererTest, APixelOfTheGroundIsCoveredWithAllItsSamples) {
+  const Frame frame{.size = {64, 48}, .ground = GroundViewOptions{.height = 30, .pitch = 0.3}, .supersampling = 4};
+  const Image image = draw(frame, plane_probe());
+  const GroundView view(frame.size, *frame.ground);
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const double expected = view.covers(x, y) ? view.footprint(x, y)(0, 0) / 4 : 0;
+      // The mean over the pixel of a side that is inversely proportional to the depth.
+      ASSERT_NEAR(image.at(4, x, y), expected, 0.1 * expected) << x << ", " << y;
+    }
+  }
+}
+
 TEST_P(RendererTest, FramesOfOtherSizesFollowEachOther) {
   Renderer renderer(*context_, plane_probe(), GetParam());
   EXPECT_EQ(renderer.draw({.size = {17, 5}}).extent(), (Extent{17, 5}));
