@@ -16,6 +16,9 @@ namespace {
 
 constexpr double furthest_from_base = 0x1p20;
 constexpr int group_side = 16;  // of compute.glsl
+/// Mesa's software ends all loops of an invocation after 65535 turns in all, without a word. There are up to four
+/// impacts to a useful fetch.
+constexpr double most_software_fetches = 65535.0 / 4;
 
 constexpr std::string_view vertex_text =
     "void main() {  // one triangle over the frame\n"
@@ -58,7 +61,12 @@ struct Renderer::Resources {
 };
 
 Renderer::Renderer(Context& context, const ShaderRecipe& recipe, ShaderPath path)
-    : context_(context), path_(path), channels_(recipe.channels), base_(recipe.base), shader_(recipe.shader) {
+    : context_(context),
+      path_(path),
+      channels_(recipe.channels),
+      fetches_(recipe.useful_fetches),
+      base_(recipe.base),
+      shader_(recipe.shader) {
   if (recipe.channels < 1 || recipe.channels > 8) {
     throw std::invalid_argument(fmt::format("recipe of {} channels: expected 1 to 8", recipe.channels));
   }
@@ -107,6 +115,13 @@ void Renderer::prepare(const Frame& frame) {
   if (!(std::isfinite(frame.step) && frame.step > 0 && frame.step < furthest_from_base)) {
     throw std::invalid_argument(fmt::format("frame of step {}: expected a finite one above 0", frame.step));
   }
+  if (context_.info().software && fetches_ * frame.supersampling > most_software_fetches) {
+    throw GpuError(
+        fmt::format("{} fetches a row of samples, {} in a row: {} ends loops that long before they are done; take "
+                    "fewer impacts, or "
+                    "the processor",
+                    fetches_ * frame.supersampling, frame.supersampling, context_.info().renderer));
+  }
   context_.make_current();
   resources_->frame.resize(frame.size);
   const int n = frame.supersampling;
@@ -146,6 +161,7 @@ void Renderer::prepare(const Frame& frame) {
                                              static_cast<float>(std::sin(ground.pitch)),
                                              static_cast<float>(std::cos(ground.pitch))});
   program.set("furthest", static_cast<float>(ground.furthest));
+  program.set("sample_row", std::int32_t{0});
   program.require_all_set(shader_);
   for (std::size_t unit = 0; unit < resources_->textures.size(); ++unit) {
     resources_->textures[unit].bind(static_cast<GLuint>(unit));
@@ -153,20 +169,25 @@ void Renderer::prepare(const Frame& frame) {
   resources_->frame.bind(path_ == ShaderPath::compute);
 }
 
-void Renderer::submit(Extent size) {
+void Renderer::submit(const Frame& frame) {
   const GlFunctions& gl = context_.gl();
-  if (path_ == ShaderPath::compute) {
-    const auto groups = [](int pixels) { return static_cast<GLuint>((pixels + group_side - 1) / group_side); };
-    gl.DispatchCompute(groups(size.width), groups(size.height), 1);
-    gl.MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-  } else {
-    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  const auto groups = [](int pixels) { return static_cast<GLuint>((pixels + group_side - 1) / group_side); };
+  for (int row = 0; row < frame.supersampling; ++row) {
+    resources_->program.set("sample_row", std::int32_t{row});
+    if (path_ == ShaderPath::compute) {
+      gl.DispatchCompute(groups(frame.size.width), groups(frame.size.height), 1);
+      gl.MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    } else {
+      row == 0 ? gl.Disable(GL_BLEND) : gl.Enable(GL_BLEND);
+      gl.BlendFunc(GL_ONE, GL_ONE);
+      gl.DrawArrays(GL_TRIANGLES, 0, 3);
+    }
   }
 }
 
 Image Renderer::draw(const Frame& frame) {
   prepare(frame);
-  submit(frame.size);
+  submit(frame);
   Image image = resources_->frame.read(channels_);
   context_.check(fmt::format("drawing a frame of {}x{} pixels", frame.size.width, frame.size.height));
   return image;
@@ -176,14 +197,14 @@ std::vector<double> Renderer::time(const Frame& frame, int warm_up, int count) {
   prepare(frame);
   const GlFunctions& gl = context_.gl();
   for (int i = 0; i < warm_up; ++i) {
-    submit(frame.size);
+    submit(frame);
   }
   gl.Finish();
   std::vector<GLuint> queries(static_cast<std::size_t>(count));
   gl.GenQueries(count, queries.data());
   for (const GLuint query : queries) {
     gl.BeginQuery(GL_TIME_ELAPSED, query);
-    submit(frame.size);
+    submit(frame);
     gl.EndQuery(GL_TIME_ELAPSED);
   }
   std::vector<double> milliseconds;

@@ -38,9 +38,10 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Throws GpuError for a frame beyond the driver's limits or memory, for a uniform or sampler that the shader reads
-  /// and the recipe does not set, and for a context that was lost; std::invalid_argument for a frame that is empty or
-  /// farther than 2^20 pixels from the recipe's base.
+  /// In a pass for each row of a pixel's samples, so that no shader runs for long. Throws GpuError for a frame beyond
+  /// the driver's limits or memory, for a uniform or sampler that the shader reads and the recipe does not set, for a
+  /// context that was lost and, in software, for more impacts than its loops count; std::invalid_argument for a frame
+  /// that is empty or farther than 2^20 pixels from the recipe's base.
   Image draw(const Frame& frame);
 
   /// Milliseconds of the graphics processor for each of `count` frames, by timer queries, after `warm_up` others.
@@ -50,11 +51,12 @@ class Renderer {
  private:
   struct Resources;
   void prepare(const Frame& frame);
-  void submit(Extent size);
+  void submit(const Frame& frame);
 
   Context& context_;
   ShaderPath path_;
   int channels_;
+  double fetches_;
   Eigen::Vector2d base_;
   std::string shader_;
   std::unique_ptr<Resources> resources_;

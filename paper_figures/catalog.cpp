@@ -7,6 +7,7 @@
 #include "paper_figures/chart.h"
 #include "paper_figures/curve.h"
 #include "paper_figures/figure_kind.h"
+#include "paper_figures/frame_table.h"
 #include "paper_figures/front.h"
 #include "paper_figures/panel.h"
 #include "paper_figures/table.h"
@@ -15,13 +16,14 @@
 namespace textonbench {
 namespace {
 
-constexpr std::array<FigureKind, 6> kinds{{
+constexpr std::array<FigureKind, 7> kinds{{
     {"panel", check_panel, write_panel, panel_html},
     {"table", check_table, write_table, table_html},
     {"chart", check_chart, write_chart, chart_html},
     {"curve", check_curve, write_curve, curve_html},
     {"front", check_front, write_front, front_html},
     {"texton_table", check_texton_table, write_texton_table, texton_table_html},
+    {"frame_table", check_frame_table, write_frame_table, frame_table_html},
 }};
 
 void require_known(const FigureTable& table, const std::string& key, std::span<const std::string_view> known) {

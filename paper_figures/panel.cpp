@@ -28,22 +28,10 @@ bool is_selector(const std::string& key) {
   return key != "run" && key != "picture" && key != "label" && key != "fit" && key != "note";
 }
 
-/// What a column may select a run by, as the text of the value.
-std::optional<std::string> attribute(const RunSpec& spec, const std::string& key) {
-  if (key == "seed") return std::to_string(spec.seed);
-  if (key == "method") return spec.method;
-  if (key == "periodic") return spec.periodic ? "true" : "false";
-  if (key == "width") return std::to_string(spec.size.width);
-  if (key == "height") return std::to_string(spec.size.height);
-  const std::map<std::string, ParamValue> options = options_of(spec);
-  const auto option = options.find(key);
-  return option == options.end() ? std::nullopt : std::optional(to_string(option->second));
-}
-
 bool answers(const SelectedRun& run, const Column& column) {
   if (run.label != to_string(column.at("run"))) return false;
   return std::ranges::all_of(column, [&](const auto& entry) {
-    return !is_selector(entry.first) || attribute(run.spec(), entry.first) == to_string(entry.second);
+    return !is_selector(entry.first) || attribute_of(run.spec(), entry.first) == to_string(entry.second);
   });
 }
 
@@ -55,8 +43,9 @@ std::vector<std::string> differences(const std::vector<const SelectedRun*>& runs
   }
   std::vector<std::string> differing;
   for (const std::string& key : keys) {
-    const auto first = attribute(runs.front()->spec(), key);
-    const bool same = std::ranges::all_of(runs, [&](const auto* run) { return attribute(run->spec(), key) == first; });
+    const auto first = attribute_of(runs.front()->spec(), key);
+    const bool same =
+        std::ranges::all_of(runs, [&](const auto* run) { return attribute_of(run->spec(), key) == first; });
     if (!same) differing.push_back(key);
   }
   return differing;

@@ -77,4 +77,16 @@ std::string config_argument(const Config& config) {
   return file.ends_with("/" + in_tree) ? in_tree : file;
 }
 
+std::optional<std::string> attribute_of(const RunSpec& spec, const std::string& key) {
+  if (key == "exemplar") return spec.exemplar;
+  if (key == "seed") return std::to_string(spec.seed);
+  if (key == "method") return spec.method;
+  if (key == "periodic") return spec.periodic ? "true" : "false";
+  if (key == "width") return std::to_string(spec.size.width);
+  if (key == "height") return std::to_string(spec.size.height);
+  const std::map<std::string, ParamValue> options = options_of(spec);
+  const auto option = options.find(key);
+  return option == options.end() ? std::nullopt : std::optional(to_string(option->second));
+}
+
 }  // namespace textonbench

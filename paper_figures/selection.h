@@ -36,6 +36,10 @@ std::optional<std::string> unusable(const Config& config, const std::vector<Sele
 /// "rpn on ring, seed 2 (id 0123456789abcdef)".
 std::string describe(const SelectedRun& run);
 
+/// What a figure may select a run by, as the text of its value: exemplar, seed, method, periodic, width, height, or an
+/// option (options_of). Nothing where the run has no such option.
+std::optional<std::string> attribute_of(const RunSpec& spec, const std::string& key);
+
 /// Names of the exemplars of these runs, each once, in order.
 std::vector<std::string> exemplars_of(const std::vector<SelectedRun>& runs);
 

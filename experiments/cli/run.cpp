@@ -15,6 +15,8 @@
 #include "experiments/progress.h"
 #include "experiments/provenance.h"
 #include "experiments/runner.h"
+#include "paper_figures/frame_table.h"
+#include "paper_figures/selection.h"
 
 namespace textonbench::cli {
 namespace {
@@ -154,6 +156,20 @@ int show_plan(const Plan& plan, const RunCommandOptions& options, const TimeEsti
   return 0;
 }
 
+/// The tables of frame times of these configs, for people who have waited for them.
+void print_frame_tables(const RunCommandOptions& options, const std::filesystem::path& home,
+                        const ExemplarCatalog& exemplars, const ResultsFolder& results) {
+  for (const std::string& name : options.configs) {
+    const Config config = read_config(find_config(home, name), options.profile);
+    for (const FigureTable& figure : config.figures) {
+      if (figure.kind != "frame_table") continue;
+      const Plan plan = make_plan(config, exemplars, std::numeric_limits<std::size_t>::max());
+      const std::vector<SelectedRun> runs = select_runs(figure, plan, results.read().records);
+      fmt::print("\n{}", frame_table_text({figure, runs, ""}));
+    }
+  }
+}
+
 int run(const RunCommandOptions& options, const GlobalOptions& globals) {
   const std::filesystem::path home = home_folder();
   const ExemplarCatalog exemplars(home);
@@ -196,6 +212,7 @@ int run(const RunCommandOptions& options, const GlobalOptions& globals) {
     fmt::print(stderr, "stopped: what is recorded is kept; the same command goes on from there\n");
     return 1;
   }
+  if (!options.json) print_frame_tables(options, home, exemplars, results);
   if (!globals.quiet && !options.json) fmt::print(stderr, "next: textonbench report\n");
   return summary.failed > 0 ? 1 : 0;
 }

@@ -1,13 +1,13 @@
-// A work group of 16 x 16 pixels, whose threads call texture_at() together.
+// A work group of 16 x 16 pixels, whose threads call texture_at() together, for a row of their samples.
 #define COMPUTE
 #include "frame.glsl"
 
 layout(local_size_x = 16, local_size_y = 16) in;
 #include RECIPE
 
-layout(rgba32f, binding = 0) writeonly uniform image2D channels_0;
+layout(rgba32f, binding = 0) uniform image2D channels_0;
 #if CHANNELS > 4
-layout(rgba32f, binding = 1) writeonly uniform image2D channels_1;
+layout(rgba32f, binding = 1) uniform image2D channels_1;
 #endif
 
 shared ivec2 tile_low;
@@ -41,27 +41,29 @@ void main() {
   bool is_inside = all(lessThan(pixel, frame_size));
   pixel = min(pixel, frame_size - 1);
   float sums[8] = float[8](0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-  for (int j = 0; j < supersampling; ++j) {
-    for (int i = 0; i < supersampling; ++i) {
-      View view = view_of(pixel, ivec2(i, j));
-      PlaneBox box = box_of_group(view, ivec2(i, j));
-      if (any(greaterThan(box.low, box.high))) {
-        continue;  // no pixel of the group shows the plane
-      }
-      if (!view.covered) {
-        view.point = PlanePoint(box.low, ivec2(0));
-        view.footprint = mat2(0.0);
-      }
-      float values[CHANNELS];
-      texture_at(view.point, view.footprint, box, values);
-      for (int c = 0; c < CHANNELS; ++c) sums[c] += view.covered ? values[c] : 0.0;
+  for (int i = 0; i < supersampling; ++i) {
+    View view = view_of(pixel, ivec2(i, sample_row));
+    PlaneBox box = box_of_group(view, ivec2(i, sample_row));
+    if (any(greaterThan(box.low, box.high))) {
+      continue;  // no pixel of the group shows the plane
     }
+    if (!view.covered) {
+      view.point = PlanePoint(box.low, ivec2(0));
+      view.footprint = mat2(0.0);
+    }
+    float values[CHANNELS];
+    texture_at(view.point, view.footprint, box, values);
+    for (int c = 0; c < CHANNELS; ++c) sums[c] += view.covered ? values[c] : 0.0;
   }
   float share = 1.0 / float(supersampling * supersampling);
   if (is_inside) {
-    imageStore(channels_0, pixel, share * vec4(sums[0], sums[1], sums[2], sums[3]));
+    vec4 values = share * vec4(sums[0], sums[1], sums[2], sums[3]);
+    if (sample_row > 0) values += imageLoad(channels_0, pixel);
+    imageStore(channels_0, pixel, values);
 #if CHANNELS > 4
-    imageStore(channels_1, pixel, share * vec4(sums[4], sums[5], sums[6], sums[7]));
+    values = share * vec4(sums[4], sums[5], sums[6], sums[7]);
+    if (sample_row > 0) values += imageLoad(channels_1, pixel);
+    imageStore(channels_1, pixel, values);
 #endif
   }
 }

@@ -1,4 +1,4 @@
-// One pixel a thread, each by itself.
+// One pixel a thread, each by itself: a row of its samples.
 #include "frame.glsl"
 #include RECIPE
 
@@ -10,14 +10,12 @@ layout(location = 1) out vec4 channels_1;
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   float sums[8] = float[8](0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-  for (int j = 0; j < supersampling; ++j) {
-    for (int i = 0; i < supersampling; ++i) {
-      View view = view_of(pixel, ivec2(i, j));
-      if (view.covered) {
-        float values[CHANNELS];
-        texture_at(view.point, view.footprint, PlaneBox(view.point.coarse, view.point.coarse), values);
-        for (int c = 0; c < CHANNELS; ++c) sums[c] += values[c];
-      }
+  for (int i = 0; i < supersampling; ++i) {
+    View view = view_of(pixel, ivec2(i, sample_row));
+    if (view.covered) {
+      float values[CHANNELS];
+      texture_at(view.point, view.footprint, PlaneBox(view.point.coarse, view.point.coarse), values);
+      for (int c = 0; c < CHANNELS; ++c) sums[c] += values[c];
     }
   }
   float share = 1.0 / float(supersampling * supersampling);

@@ -3,6 +3,7 @@
 
 uniform ivec2 frame_size;
 uniform int supersampling;  // n: n x n samples a pixel
+uniform int sample_row;     // those of this pass
 
 // A raster: sample i along an axis, of all samples of the frame, is at origin + i step, whole numbers of 2^−10 pixel and
 // 32 bits below.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gpu/shader_source.h"
+#include "tests/gpu/texton_shader.h"
 
 namespace textonbench::renderer_test {
 
@@ -77,6 +78,40 @@ TEST_P(RendererTest, SamplesAverageAroundThePixel) {
   EXPECT_NEAR(image.at(0, 1, 2) / 1024 + image.at(2, 1, 2) * 0x1p-22, 2 + 2 * 1, 1e-5);
   EXPECT_NEAR(image.at(1, 1, 2) / 1024 + image.at(3, 1, 2) * 0x1p-22, 3 + 2 * 2, 1e-5);
   EXPECT_FLOAT_EQ(image.at(4, 1, 2), 0.5F);
+}
+
+// All samples of a pixel at once would be more than 65535 turns of loops, where Mesa's software stops.
+TEST_P(RendererTest, ManySamplesOfManyImpactsAverageAsPixelsOfAFinerFrameDo) {
+  const SplineTexton texton = shader_texton(1, 3, 1);
+  const auto noise = make_spline_noise(texton, {.impacts = ImpactProcess::poisson, .mni = 100});
+  const ShaderRecipe recipe = noise->shader({.seed = Seed{3}, .fetch = ShaderFetch::manual}).value();
+  constexpr int n = 20;
+  const Frame frame{.size = {6, 5}, .origin = {4, 7}, .step = 2, .supersampling = n};
+  const Frame fine{.size = {6 * n, 5 * n}, .origin = {4 + 1.0 / n - 1, 7 + 1.0 / n - 1}, .step = 2.0 / n};
+  const Image averaged = draw(frame, recipe), samples = draw(fine, recipe);
+  const std::vector<double> scale = deviations(texton);
+  for (int c = 0; c < 3; ++c) {
+    for (int y = 0; y < 5; ++y) {
+      for (int x = 0; x < 6; ++x) {
+        double sum = 0;
+        for (int j = 0; j < n; ++j) {
+          for (int i = 0; i < n; ++i) sum += samples.at(c, n * x + i, n * y + j);
+        }
+        ASSERT_NEAR(averaged.at(c, x, y), sum / (n * n), 1e-5 * scale[static_cast<std::size_t>(c)]) << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST_P(RendererTest, SoftwareRefusesMoreImpactsThanItsLoopsCount) {
+  if (!context_->info().software) GTEST_SKIP() << "a graphics processor counts on";
+  const auto noise = make_spline_noise(shader_texton(1, 1, 1), {.impacts = ImpactProcess::poisson, .mni = 5000});
+  try {
+    draw({.size = {4, 4}, .supersampling = 4}, noise->shader({.seed = Seed{3}}).value());
+    FAIL() << "expected an error";
+  } catch (const GpuError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("take fewer impacts"));
+  }
 }
 
 TEST_P(RendererTest, GroundIsThatOfTheProcessor) {
