@@ -101,7 +101,7 @@ constexpr std::array entries{
     PictureEntry{"mean_modulus", "Modulus of the samples",
                  [](const PictureSource& s) { return mean_modulus_picture(s.samples); }},
     PictureEntry{"texton", "Texton", texton_picture},
-    PictureEntry{"sample_far", "Close-up of the upper part", [](const PictureSource& s) { return close_up(s, 0.35); }},
+    PictureEntry{"sample_far", "Close-up of the upper part", [](const PictureSource& s) { return close_up(s, 0.2); }},
     PictureEntry{"sample_near", "Close-up of the lower part", [](const PictureSource& s) { return close_up(s, 0.8); }},
     PictureEntry{"sample_phase", "Phase of the sample",
                  [](const PictureSource& s) { return phase_picture(sample<0>(s)); }},

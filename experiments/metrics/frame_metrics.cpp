@@ -64,7 +64,7 @@ constexpr std::array entries_of_frames{
                              "without mip levels, over the noise's standard deviation (CGF 2017, Section 5)",
                 .source = "reference_error"},
     MetricEntry{.name = "supersampling_error",
-                .title = "Distance to supersampling",
+                .title = "Filter error",
                 .unit = "1",
                 .level = MetricLevel::frame,
                 .better = Better::lower,
