@@ -60,8 +60,9 @@ constexpr std::array entries_of_frames{
                 .unit = "1",
                 .level = MetricLevel::frame,
                 .better = Better::lower,
-                .reference = "RMSE of an unfiltered frame to that of the shader of filtered ones, as it is, on a texton "
-                             "without mip levels, over the noise's standard deviation (CGF 2017, Section 5)",
+                .reference =
+                    "RMSE of an unfiltered frame to that of the shader of filtered ones, as it is, on a texton "
+                    "without mip levels, over the noise's standard deviation (CGF 2017, Section 5)",
                 .source = "reference_error"},
     MetricEntry{.name = "supersampling_error",
                 .title = "Filter error",
