@@ -123,14 +123,17 @@ FrameJson frame_table_view(const FigureInput& input, bool linked) {
   const FrameTable table = fill_frame_table(input);
   FrameJson rows = FrameJson::array(), ratios = FrameJson::array();
   bool any_paper = false, any_ratio_of_paper = false;
+  const std::string shared = shared_obstacle(table);
   for (const FrameRow& row : table.rows) {
     any_paper = any_paper || row.paper_milliseconds.has_value();
-    FrameJson cells = FrameJson::array();
-    for (const std::string& cell : frame_cells(row)) cells.push_back(cell);
+    // The range stands below its median.
+    const std::vector<std::string> texts = frame_cells(row);
+    FrameJson cells = {{{"value", texts[0]}, {"detail", row.numbers ? FrameJson(texts[1]) : FrameJson(nullptr)}}};
+    for (std::size_t c = 2; c < texts.size(); ++c) cells.push_back({{"value", texts[c]}, {"detail", nullptr}});
     rows.push_back({{"label", row.label},
                     {"renderer", or_null(row.renderer)},
                     {"extent", row.runs > 1 ? FrameJson(fmt::format("mean of {} runs", row.runs)) : FrameJson(nullptr)},
-                    {"obstacle", or_null(row.obstacle)},
+                    {"obstacle", shared.empty() ? or_null(row.obstacle) : FrameJson(nullptr)},
                     {"record", row.record},
                     {"linked", linked && !row.record.empty()},
                     {"cells", std::move(cells)},
@@ -147,9 +150,12 @@ FrameJson frame_table_view(const FigureInput& input, bool linked) {
   if (!any_ratio_of_paper) {
     for (FrameJson& ratio : ratios) ratio["paper"] = FrameJson::array();
   }
+  std::vector<std::string> columns = frame_columns(table);
+  columns.erase(columns.begin() + 1);
   const auto machine = input.table.options.find("paper_machine");
   return {{"caption", input.table.title},
-          {"columns", frame_columns(table)},
+          {"obstacle", or_null(shared)},
+          {"columns", std::move(columns)},
           {"papers", any_paper ? FrameJson(paper_columns()) : FrameJson::array()},
           {"paper_machine", machine == input.table.options.end() ? "the paper" : to_string(machine->second)},
           {"has_papers", any_paper},

@@ -54,6 +54,13 @@ std::vector<std::string> frame_cells(const FrameRow& row) {
           format_number(n.ceiling_fraction, 2)};
 }
 
+std::string shared_obstacle(const FrameTable& table) {
+  const std::string& first = table.rows.front().obstacle;
+  const bool shared = std::ranges::all_of(
+      table.rows, [&](const FrameRow& row) { return !row.numbers.has_value() && row.obstacle == first; });
+  return shared ? first : "";
+}
+
 std::vector<std::string> paper_columns() { return {"ms", "fps", "ns/pixel"}; }
 
 std::vector<std::string> paper_cells(const FrameRow& row) {
@@ -65,12 +72,11 @@ std::vector<std::string> paper_cells(const FrameRow& row) {
 std::string frame_table_text(const FigureInput& input) {
   const FrameTable table = fill_frame_table(input);
   std::string text = input.table.title + "\n";
-  std::set<std::string> obstacles, renderers;
+  if (const std::string shared = shared_obstacle(table); !shared.empty()) return fmt::format("{}  {}\n", text, shared);
+  std::set<std::string> renderers;
   for (const FrameRow& row : table.rows) {
-    if (!row.obstacle.empty()) obstacles.insert(row.obstacle);
     if (row.numbers) renderers.insert(row.renderer);
   }
-  if (renderers.empty() && obstacles.size() == 1) return text + "  " + *obstacles.begin() + "\n";
   for (const std::string& renderer : renderers) text += renderer + "\n";
   const bool any_paper =
       std::ranges::any_of(table.rows, [](const FrameRow& row) { return row.paper_milliseconds.has_value(); });
