@@ -22,7 +22,7 @@ namespace {
 /// Of the reference of supersampling_error, a side of the pixel.
 constexpr int reference_samples = 20;
 /// Time for the frames of one run in software.
-constexpr double software_budget = 4;
+constexpr double software_budget = 2;
 
 using namespace std::string_view_literals;
 
