@@ -12,7 +12,8 @@ namespace {
 
 /// Files that an earlier run made for this figure: none may be left when it is refused now.
 void remove_figure(const std::filesystem::path& stem) {
-  for (const char* suffix : {".png", ".inputs", ".svg", ".pdf", ".gp", ".csv", "_records.csv", ".html"}) {
+  for (const char* suffix :
+       {".png", ".inputs", ".svg", ".pdf", ".gp", ".csv", "_records.csv", "_ratios.csv", ".html"}) {
     std::filesystem::remove(with_suffix(stem, suffix));
   }
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 
 #include "experiments/files.h"
@@ -28,9 +29,9 @@ std::optional<double> positive_number(const FigureTable& table, const std::strin
   const auto* whole = std::get_if<std::int64_t>(&found->second);
   const auto* real = std::get_if<double>(&found->second);
   const double value = whole != nullptr ? static_cast<double>(*whole) : real != nullptr ? *real : 0;
-  if (!(value > 0)) {
+  if (!(value > 0) || !std::isfinite(value)) {
     throw ConfigError(place_of(table, fmt::format("{}[{}].{}", list, index, key)),
-                      fmt::format("{} = {}: expected a number above 0", key, to_string(found->second)));
+                      fmt::format("{} = {}: expected a finite number above 0", key, to_string(found->second)));
   }
   return value;
 }
@@ -115,6 +116,26 @@ const FrameRow& row_named(const FigureInput& input, const FrameTable& table, std
                     fmt::format("no row has the label \"{}\"{}", name, did_you_mean(name, labels)));
 }
 
+/// Throws unless the runs of a row are the same but for exemplar and seed: a mean over textons of several sizes, say,
+/// would pass for one of them.
+void require_like_runs(const FigureInput& input, std::size_t index, const std::vector<std::string_view>& attributes) {
+  const FrameKeys& row = tables_of(input.table, "rows")[index];
+  const RunSpec* first = nullptr;
+  std::set<std::string_view> differing;
+  for (const SelectedRun& run : input.runs) {
+    if (!serves(run, row)) continue;
+    if (first == nullptr) first = &run.spec();
+    for (const std::string_view name : attributes) {
+      const std::string key(name);
+      if (attribute_of(run.spec(), key) != attribute_of(*first, key)) differing.insert(name);
+    }
+  }
+  if (differing.empty()) return;
+  throw ConfigError(place_of(input.table, fmt::format("rows[{}]", index)),
+                    fmt::format("row \"{}\" matches runs that differ in {}: add {}", to_string(row.at("label")),
+                                fmt::join(differing, ", "), fmt::join(differing, " or ")));
+}
+
 std::string number_text(const std::optional<double>& value, int digits) {
   return value ? format_number(*value, digits) : "–";
 }
@@ -127,7 +148,7 @@ FrameJson frame_table_view(const FigureInput& input, bool linked) {
   for (const FrameRow& row : table.rows) {
     any_paper = any_paper || row.paper_milliseconds.has_value();
     // The range stands below its median.
-    const std::vector<std::string> texts = frame_cells(row);
+    const std::vector<std::string> texts = frame_cells(row, table);
     FrameJson cells = {{{"value", texts[0]}, {"detail", row.numbers ? FrameJson(texts[1]) : FrameJson(nullptr)}}};
     for (std::size_t c = 2; c < texts.size(); ++c) cells.push_back({{"value", texts[c]}, {"detail", nullptr}});
     rows.push_back({{"label", row.label},
@@ -152,12 +173,13 @@ FrameJson frame_table_view(const FigureInput& input, bool linked) {
   }
   std::vector<std::string> columns = frame_columns(table);
   columns.erase(columns.begin() + 1);
-  const auto machine = input.table.options.find("paper_machine");
+  const std::vector<std::string> renderers = renderers_of(table);
   return {{"caption", input.table.title},
           {"obstacle", or_null(shared)},
           {"columns", std::move(columns)},
           {"papers", any_paper ? FrameJson(paper_columns()) : FrameJson::array()},
-          {"paper_machine", machine == input.table.options.end() ? "the paper" : to_string(machine->second)},
+          {"renderer", renderers.size() == 1 ? renderers.front() : "here"},
+          {"paper_machine", paper_machine(input)},
           {"has_papers", any_paper},
           {"rows", std::move(rows)},
           {"has_ratios", !ratios.empty()},
@@ -205,7 +227,8 @@ FrameTable fill_frame_table(const FigureInput& input) {
     FrameRatio ratio{.label = to_string(ratios[i].at("label")),
                      .value = std::nullopt,
                      .paper = positive_number(input.table, "ratios", i, ratios[i], "paper")};
-    if (of.numbers && over.numbers) ratio.value = of.numbers->ns_per_pixel / over.numbers->ns_per_pixel;
+    const bool comparable = of.numbers && over.numbers && of.renderer == over.renderer;
+    if (comparable) ratio.value = of.numbers->ns_per_pixel / over.numbers->ns_per_pixel;
     table.ratios.push_back(std::move(ratio));
   }
   return table;
@@ -221,15 +244,29 @@ void check_frame_table(const FigureInput& input) {
   for (const SelectedRun& run : input.runs) {
     for (const auto& [name, value] : options_of(run.spec())) options.insert(name);
   }
+  std::vector<std::string_view> attributes{"method", "width", "height"};
+  attributes.insert(attributes.end(), options.begin(), options.end());
   constexpr std::array<std::string_view, 2> of_row{"run", "label"};
-  std::vector<std::string_view> selectors{"paper_ms", "exemplar", "seed", "method", "width", "height"};
-  selectors.insert(selectors.end(), options.begin(), options.end());
-  // A plan whose exemplars are all elsewhere knows no options.
-  if (!input.runs.empty()) require_known_columns(input.table, "rows", of_row, selectors);
+  std::vector<std::string_view> selectors{"paper_ms", "exemplar", "seed"};
+  selectors.insert(selectors.end(), attributes.begin(), attributes.end());
+  if (input.runs.empty()) {  // a plan whose exemplars are all elsewhere knows no options
+    for (const FrameKeys& row : tables_of(input.table, "rows")) {
+      for (const auto& [key, value] : row) selectors.emplace_back(key);
+    }
+  }
+  require_known_columns(input.table, "rows", of_row, selectors);
   constexpr std::array<std::string_view, 3> of_ratio{"label", "of", "over"};
   constexpr std::array<std::string_view, 1> paper{"paper"};
   require_known_columns(input.table, "ratios", of_ratio, paper);
-  fill_frame_table(input);
+  const FrameTable table = fill_frame_table(input);
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    require_like_runs(input, i, attributes);
+    const std::string& label = table.rows[i].label;
+    if (std::ranges::find(table.rows, label, &FrameRow::label) != table.rows.begin() + static_cast<std::ptrdiff_t>(i)) {
+      throw ConfigError(place_of(input.table, fmt::format("rows[{}].label", i)),
+                        fmt::format("two rows have the label \"{}\": expected one each", label));
+    }
+  }
 }
 
 std::vector<std::filesystem::path> write_frame_table(const FigureInput& input, const ResultsFolder& /*results*/,

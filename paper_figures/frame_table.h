@@ -2,9 +2,9 @@
 //
 // [[figures]] keys: `rows`, a list of {run, label} with any of `paper_ms`, and the selectors of a panel's columns
 // (seed, method, width, height and options, such as support or "gpu.path"): a row is the mean over its runs of their
-// medians. `ratios`, a list of {label, of, over} with the labels of two rows and perhaps `paper`: the quotient of their
-// times a pixel. `paper_machine`: what drew the paper's frames. Runs time frames (experiments/gpu_run.h); a row whose
-// runs were refused says why.
+// medians. They may differ in exemplar and seed only. `ratios`, a list of {label, of, over} with the labels of two rows
+// and perhaps `paper`: the quotient of their times a pixel, none for frames of different renderers. `paper_machine`:
+// what drew the paper's frames. Runs time frames (experiments/gpu_run.h); a row whose runs were refused says why.
 #pragma once
 
 #include <filesystem>
@@ -47,6 +47,8 @@ struct FrameTable {
 };
 FrameTable fill_frame_table(const FigureInput& input);
 
+/// Besides what figure_kind.h says, throws ConfigError for two rows of one label, a row of unlike runs, a ratio of no
+/// row, and a paper's number that is not above 0.
 void check_frame_table(const FigureInput& input);
 /// <stem>.csv (rows), <stem>_ratios.csv and <stem>.html.
 std::vector<std::filesystem::path> write_frame_table(const FigureInput& input, const ResultsFolder& results,

@@ -16,7 +16,6 @@
 #include "experiments/provenance.h"
 #include "experiments/runner.h"
 #include "paper_figures/frame_table.h"
-#include "paper_figures/selection.h"
 
 namespace textonbench::cli {
 namespace {
@@ -156,18 +155,26 @@ int show_plan(const Plan& plan, const RunCommandOptions& options, const TimeEsti
   return 0;
 }
 
-/// The tables of frame times of these configs, for people who have waited for them.
-void print_frame_tables(const RunCommandOptions& options, const std::filesystem::path& home,
-                        const ExemplarCatalog& exemplars, const ResultsFolder& results) {
+/// A table of frame times, which is printed once its runs have ended, with the plan of its config.
+struct AwaitedTable {
+  FigureTable figure;
+  Plan plan;
+};
+
+/// Throws ConfigError for a table that cannot be printed: hours of runs are to end in one.
+std::vector<AwaitedTable> frame_tables(const RunCommandOptions& options, const std::filesystem::path& home,
+                                       const ExemplarCatalog& exemplars) {
+  std::vector<AwaitedTable> tables;
   for (const std::string& name : options.configs) {
     const Config config = read_config(find_config(home, name), options.profile);
     for (const FigureTable& figure : config.figures) {
       if (figure.kind != "frame_table") continue;
-      const Plan plan = make_plan(config, exemplars, std::numeric_limits<std::size_t>::max());
-      const std::vector<SelectedRun> runs = select_runs(figure, plan, results.read().records);
-      fmt::print("\n{}", frame_table_text({figure, runs, ""}));
+      Plan plan = make_plan(config, exemplars, std::numeric_limits<std::size_t>::max());
+      check_frame_table({figure, select_runs(figure, plan, {}), ""});
+      tables.push_back({figure, std::move(plan)});
     }
   }
+  return tables;
 }
 
 int run(const RunCommandOptions& options, const GlobalOptions& globals) {
@@ -185,6 +192,7 @@ int run(const RunCommandOptions& options, const GlobalOptions& globals) {
     return show_plan(plan, options, TimeEstimate(plan, read_history(globals.results), exemplars, options.fresh));
   }
 
+  const std::vector<AwaitedTable> tables = frame_tables(options, home, exemplars);
   const ResultsFolder results(globals.results);
   const RunOptions how{.jobs = options.jobs,
                        .threads = std::max(1, thread_count(globals) / options.jobs),
@@ -212,7 +220,12 @@ int run(const RunCommandOptions& options, const GlobalOptions& globals) {
     fmt::print(stderr, "stopped: what is recorded is kept; the same command goes on from there\n");
     return 1;
   }
-  if (!options.json) print_frame_tables(options, home, exemplars, results);
+  if (!options.json && !tables.empty()) {
+    const std::vector<Record> records = results.read().records;
+    for (const auto& [figure, plan] : tables) {
+      fmt::print("\n{}", frame_table_text({figure, select_runs(figure, plan, records), ""}));
+    }
+  }
   if (!globals.quiet && !options.json) fmt::print(stderr, "next: textonbench report\n");
   return summary.failed > 0 ? 1 : 0;
 }

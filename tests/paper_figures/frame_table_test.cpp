@@ -71,7 +71,8 @@ TEST_F(FrameTableTest, ARowIsTheMeanOfItsRuns) {
   EXPECT_EQ(*table.ratios[0].paper, 1.08);
 
   const std::string text = frame_table_text(input());
-  EXPECT_THAT(text, AllOf(HasSubstr("Title of frames\nAbacus 3000\n"), HasSubstr("small"), HasSubstr("paper fps"),
+  EXPECT_THAT(text, AllOf(HasSubstr("Title of frames\nAbacus 3000\npaper: Quadro\n"), HasSubstr("runs"),
+                          HasSubstr("small     2  5.000"), HasSubstr("paper fps"),
                           HasSubstr("large to small  2.00   1.08"), Not(HasSubstr("software"))));
   ASSERT_EQ(make_figures(config_, plan_, results_).made(), 1U);
   EXPECT_THAT(read_file(figure_file("frames.html")), AllOf(HasSubstr("Quadro"), HasSubstr("mean of 2 runs")));
@@ -89,6 +90,20 @@ TEST_F(FrameTableTest, SoftwareIsCalledSoEverywhere) {
               AllOf(HasSubstr("llvmpipe [software]"), HasSubstr("software fps")));
 }
 
+TEST_F(FrameTableTest, RowsOfSeveralRenderersNameTheirs) {
+  add("ring", 64, 4, true);
+  add("ring", 256, 5);
+  add_table();
+  EXPECT_FALSE(fill_frame_table(input()).ratios[0].value) << "says nothing of the textons";
+  EXPECT_THAT(frame_table_text(input()),
+              AllOf(HasSubstr("\nsmall  llvmpipe [software]  4.000"), HasSubstr("250.0 in software"),
+                    HasSubstr("\nlarge  Abacus 3000          5.000"), Not(HasSubstr("200.0 in software")),
+                    HasSubstr("large to small     –   1.08"), Not(HasSubstr("software fps"))));
+  make_figures(config_, plan_, results_);
+  EXPECT_THAT(read_file(figure_file("frames.html")),
+              AllOf(HasSubstr("250.0 in software"), HasSubstr(">here<"), Not(HasSubstr("software fps"))));
+}
+
 TEST_F(FrameTableTest, ARefusedRowSaysWhy) {
   refuse("ring", 64);
   refuse("ring", 256);
@@ -99,6 +114,12 @@ TEST_F(FrameTableTest, ARefusedRowSaysWhy) {
   EXPECT_FALSE(table.ratios[0].value);
   ASSERT_EQ(make_figures(config_, plan_, results_).made(), 1U);
   EXPECT_THAT(read_file(figure_file("frames.html")), HasSubstr("needs a GPU"));
+
+  plan_frames("cork", 64);
+  ASSERT_EQ(make_figures(config_, plan_, results_).refused(), 1U) << "a record is missing";
+  for (const char* file : {"frames.html", "frames.csv", "frames_ratios.csv"}) {
+    EXPECT_FALSE(std::filesystem::exists(figure_file(file))) << file;
+  }
 }
 
 TEST_F(FrameTableTest, BadKeysAreToldWithTheirPlace) {
@@ -110,10 +131,16 @@ TEST_F(FrameTableTest, BadKeysAreToldWithTheirPlace) {
   EXPECT_THAT(check, ThrowsMessage<ConfigError>(HasSubstr("no row has the label \"smal\" (did you mean \"small\"?)")));
   table.lists["ratios"].clear();
   table.lists["rows"][0]["paper_ms"] = 0.0;
-  EXPECT_THAT(check, ThrowsMessage<ConfigError>(HasSubstr("paper_ms = 0: expected a number above 0")));
+  EXPECT_THAT(check, ThrowsMessage<ConfigError>(HasSubstr("paper_ms = 0: expected a finite number above 0")));
   table.lists["rows"][0]["paper_ms"] = std::int64_t{5};
   table.lists["rows"][1]["suport"] = std::int64_t{3};
   EXPECT_THAT(check, ThrowsMessage<ConfigError>(HasSubstr("unknown key \"suport\" (did you mean \"support\"?)")));
+  table.lists["rows"][1] = {{"run", "frames"}, {"label", "small"}};
+  EXPECT_THAT(check, ThrowsMessage<ConfigError>(HasSubstr("two rows have the label \"small\"")));
+  add("ring", 256, 4);
+  table.lists["rows"][1]["label"] = "large";
+  EXPECT_THAT(check,
+              ThrowsMessage<ConfigError>(HasSubstr("row \"large\" matches runs that differ in support: add support")));
   table.lists.clear();
   EXPECT_THAT(check, ThrowsMessage<ConfigError>(HasSubstr("needs rows")));
 }
