@@ -92,7 +92,7 @@ std::map<std::string, ParamValue> read_options(const Json& json, const std::stri
   }
   std::map<std::string, ParamValue> values;
   for (const auto& [name, value] : options.items()) {
-    values.emplace(name, read_param(key + "." + name, value));
+    values.emplace(name, read_param(fmt::format("{}.{}", key, name), value));
   }
   return values;
 }
