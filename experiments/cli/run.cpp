@@ -222,8 +222,8 @@ int run(const RunCommandOptions& options, const GlobalOptions& globals) {
   }
   if (!options.json && !tables.empty()) {
     const std::vector<Record> records = results.read().records;
-    for (const auto& [figure, plan] : tables) {
-      fmt::print("\n{}", frame_table_text({figure, select_runs(figure, plan, records), ""}));
+    for (const AwaitedTable& table : tables) {
+      fmt::print("\n{}", frame_table_text({table.figure, select_runs(table.figure, table.plan, records), ""}));
     }
   }
   if (!globals.quiet && !options.json) fmt::print(stderr, "next: textonbench report\n");
