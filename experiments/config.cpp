@@ -101,18 +101,19 @@ void read_layer(TableReader& layer, RunsTable& runs) {
     }
     runs.combine = found->second;
   });
-  for (const auto& [key, options] : {std::pair{"params", &runs.params}, std::pair{"gpu", &runs.gpu}}) {
-    read(key, [&, path = std::string(key) + ".", &axes = *options](const TomlValue& v) {
+  const auto read_options = [&](const char* key, std::map<std::string, std::vector<ParamValue>>& options) {
+    read(key, [&](const TomlValue& v) {
       const TableReader is_a_table(v, key);
       for (const TomlEntry& entry : std::get<TomlTable>(v.data).entries) {
-        auto& values = axes[entry.key];
+        const std::string path = fmt::format("{}.{}", key, entry.key);
+        std::vector<ParamValue>& values = options[entry.key];
         values.clear();
-        for (const TomlValue* element : read_axis(entry.value, path + entry.key)) {
-          values.push_back(read_scalar(*element, path + entry.key));
-        }
+        for (const TomlValue* element : read_axis(entry.value, path)) values.push_back(read_scalar(*element, path));
       }
     });
-  }
+  };
+  read_options("params", runs.params);
+  read_options("gpu", runs.gpu);
   read("exclude", [&](const TomlValue& v) {
     runs.exclude.clear();
     for (const TomlValue& element : read_list(v, "exclude")) {
