@@ -12,6 +12,7 @@
 #include "methods/base/exemplar.h"
 #include "methods/base/gaussian_model.h"
 #include "methods/base/image.h"
+#include "methods/base/mask.h"
 #include "methods/base/params.h"
 #include "methods/base/random.h"
 #include "methods/base/shader_recipe.h"
@@ -38,6 +39,8 @@ struct Domain {
 struct Problem {
   const Exemplar& exemplar;
   const Exemplar* second = nullptr;  ///< of a method with an option whose unit is "exemplar": what it names
+  /// Of a method with an option whose unit is "mask": what is known of the exemplar.
+  const Observation* observed = nullptr;
 };
 
 /// The model's own second-order law, in closed form.
@@ -65,6 +68,22 @@ class Procedural {
   /// ∂/∂x of all channels, then ∂/∂y of all channels, a pixel; as evaluate(). Throws std::invalid_argument at
   /// smoothness 0.
   virtual void gradient(std::span<const Point2> points, Seed seed, std::span<float> out) const = 0;
+};
+
+/// A law given what is known of one picture: samples are the picture wherever it is known.
+class Conditional {
+ public:
+  virtual ~Conditional() = default;
+  /// The pixels that are drawn.
+  virtual const Mask& missing() const = 0;
+  /// The known pixels that they are drawn given.
+  virtual const Mask& conditioning() const = 0;
+  /// The conditional mean at the missing pixels, the picture elsewhere.
+  virtual Image kriging() const = 0;
+  /// What the sample of that seed adds to it, zero where the picture is known: mean zero.
+  virtual Image innovation(Seed seed) const = 0;
+  /// A sample of the law given nothing, mean included.
+  virtual Image unconditional(Seed seed) const = 0;
 };
 
 /// Cost of a model: bytes that must be kept to synthesise, and arithmetic operations (a complex multiplication counts
@@ -99,6 +118,8 @@ class Model {
   /// How a graphics processor evaluates the model, when it can. Throws std::invalid_argument with a reason for a
   /// request that it cannot serve.
   virtual std::optional<ShaderRecipe> shader(const ShaderRequest& /*request*/) const { return std::nullopt; }
+  /// Of a law that is conditional on a picture.
+  virtual const Conditional* conditional() const { return nullptr; }
   /// Of a model that an iteration fitted.
   virtual const Convergence* convergence() const { return nullptr; }
   virtual Footprint footprint(const Domain& domain) const = 0;
