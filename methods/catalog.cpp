@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "methods/conditional/inpainting.h"
 #include "methods/method.h"
 #include "methods/spectral/adsn.h"
 #include "methods/spectral/rpn.h"
@@ -21,9 +22,9 @@ namespace textonbench {
 
 std::span<const MethodEntry> method_catalog() {
   static const std::vector<MethodEntry> entries = {
-      rpn_entry(),   adsn_entry(),           dsn_entry(),          canonical_texton_entry(), luminance_texton_entry(),
-      sot_entry(),   optimal_texton_entry(), texton_noise_entry(), surface_noise_entry(),    filtered_noise_entry(),
-      mixing_entry()};
+      rpn_entry(),    adsn_entry(),           dsn_entry(),          canonical_texton_entry(), luminance_texton_entry(),
+      sot_entry(),    optimal_texton_entry(), texton_noise_entry(), surface_noise_entry(),    filtered_noise_entry(),
+      mixing_entry(), inpainting_entry()};
   return entries;
 }
 

@@ -1,10 +1,11 @@
-// One-dimensional complex Fourier transforms, for fft.cpp, box_fft.cpp and block_fft.cpp. The only file pair that
-// includes FFTW.
+// One-dimensional Fourier transforms, for fft.cpp, box_fft.cpp, block_fft.cpp and double_fft.cpp. The only file pair
+// that includes FFTW.
 #pragma once
 
 #include <complex>
 
 struct fftwf_plan_s;
+struct fftw_plan_s;
 
 namespace textonbench {
 
@@ -33,10 +34,34 @@ class AwkwardBlockFft {
   FftDirection direction_;
 };
 
+/// Complex lines in double precision, on 16-byte boundaries, in place.
+class DoubleLineFft {
+ public:
+  DoubleLineFft(int length, FftDirection direction);
+  void operator()(std::complex<double>* line) const;
+
+ private:
+  fftw_plan_s* plan_;
+};
+
+/// Real lines of `length` samples and their half spectra of length / 2 + 1 bins, in double precision, on 16-byte
+/// boundaries and out of place.
+class RealLineFft {
+ public:
+  explicit RealLineFft(int length);
+  void forward(double* line, std::complex<double>* bins) const;
+  /// The imaginary part of self-conjugate bins is ignored. The bins are lost.
+  void inverse(std::complex<double>* bins, double* line) const;
+
+ private:
+  fftw_plan_s *forward_, *inverse_;
+};
+
 /// How FFTW chooses its algorithms. By default (`estimate`) plans depend on the size alone, so the same seed gives the
 /// same bits in every process. With the environment variable TEXTONBENCH_FFT_PLAN=measure plans are timed and their
-/// wisdom is kept in the user's cache folder ($XDG_CACHE_HOME or ~/.cache, textonbench/fftwf-wisdom): faster for
-/// awkward sizes, but the last bits may then change when the wisdom is deleted. Provenance records which was used.
+/// wisdom is kept in the user's cache folder ($XDG_CACHE_HOME or ~/.cache, textonbench/fftwf-wisdom and fftw-wisdom):
+/// faster for awkward sizes, but the last bits may then change when the wisdom is deleted. Provenance records which was
+/// used.
 const char* fft_plan_rigor();
 
 /// Version string of the FFTW library in use.

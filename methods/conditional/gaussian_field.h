@@ -3,26 +3,11 @@
 
 #include <vector>
 
+#include "methods/base/double_fft.h"
 #include "methods/base/image.h"
 #include "methods/base/mask.h"
 
 namespace textonbench {
-
-/// Real double-precision raster of several planes without padding: channel c, row y at data[(c * height + y) * width].
-struct Planes {
-  Planes() = default;
-  Planes(Extent size, int number)
-      : extent(size), channels(number), data(static_cast<std::size_t>(size.area() * number)) {}
-
-  double* row(int channel, int y) { return data.data() + (std::int64_t{channel} * extent.height + y) * extent.width; }
-  const double* row(int channel, int y) const {
-    return data.data() + (std::int64_t{channel} * extent.height + y) * extent.width;
-  }
-
-  Extent extent;
-  int channels = 0;
-  std::vector<double> data;
-};
 
 /// Y_c = m_c + t_c * W + ν N_c on Z², or t_c ⊛ W on a torus: ADSN with the spot t, white noise W shared by all
 /// channels, and white noise N of each channel of variance ν² (Lectures 2022, inpainting).
@@ -43,7 +28,7 @@ GaussianField estimate_field(const Image& u, const Mask& missing);
 /// Estimating a law of second order from fewer says nothing.
 inline constexpr std::int64_t least_known_pixels = 64;
 
-/// Γ_cd(0) = Σ_x t_c(x) t_d(x), without the nugget, at c * channels + d.
-std::vector<double> variances(const GaussianField& field);
+/// Variance of a pixel without the nugget, Σ_x t_c(x)², mean over the channels.
+double mean_variance(const GaussianField& field);
 
 }  // namespace textonbench

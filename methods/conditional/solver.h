@@ -9,12 +9,13 @@
 #include <vector>
 
 #include "methods/conditional/kriging.h"
+#include "methods/conditional/preconditioner.h"
 
 namespace textonbench {
 
 /// How the kriging system is solved.
 enum class KrigingSolver {
-  automatic,  ///< dense up to `most_dense_unknowns`, Schwarz above
+  automatic,  ///< dense up to `automatic_dense_unknowns`, Schwarz above
   dense,      ///< Cholesky of the whole matrix
   cg,         ///< conjugate gradient
   schwarz,    ///< conjugate gradient preconditioned by overlapping additive Schwarz
@@ -26,9 +27,10 @@ std::string_view name_of(KrigingSolver solver);
 /// Throws std::invalid_argument with the names above.
 KrigingSolver kriging_solver(std::string_view name);
 
-/// A dense system of so many unknowns takes 1.5 GB·(n/14000)² and, on two cores, about as many seconds as its solution
-/// by Schwarz.
-inline constexpr int most_dense_unknowns = 2000;
+/// Up to here `automatic` takes the whole matrix: 8 MB, a few hundredths of a second.
+inline constexpr std::size_t automatic_dense_unknowns = 1000;
+/// Above, `dense` is refused: 800 MB.
+inline constexpr std::size_t most_dense_unknowns = 10000;
 
 struct SolveOptions {
   KrigingSolver solver = KrigingSolver::automatic;
@@ -40,23 +42,15 @@ struct SolveOptions {
 /// How a solution came about. Not reaching the tolerance is told here and is no exception.
 struct SolveSummary {
   KrigingSolver solver = KrigingSolver::automatic;  ///< the one used, never automatic
-  int unknowns = 0;
-  int iterations = 0;       ///< 0 for dense
-  double residual = 0;      ///< true ‖φ − Γ k‖ / ‖φ‖, computed afresh
-  std::string_view reason;  ///< why it stopped: "direct", "tolerance", "iterations" or "breakdown"
-  double setup_seconds = 0;
+  std::size_t unknowns = 0;
+  int iterations = 0;        ///< 0 for dense
+  double residual = 0;       ///< true ‖φ − Γ k‖ / ‖φ‖, computed afresh
+  std::string_view reason;   ///< why it stopped: "direct", "tolerance", "iterations" or "breakdown"
+  double setup_seconds = 0;  ///< of the system, once for all right-hand sides
   double solve_seconds = 0;
   std::size_t bytes = 0;  ///< of what the solver keeps beside the operator
 
   bool converged() const { return reason == "direct" || reason == "tolerance"; }
-};
-
-/// Approximation of the inverse of an operator, symmetric and positive definite.
-class Preconditioner {
- public:
-  virtual ~Preconditioner() = default;
-  virtual void apply(std::span<const double> residual, std::span<double> out) const = 0;
-  virtual std::size_t bytes() const = 0;
 };
 
 /// Called after every iteration with the current k and the residual of the recurrence, relative to its start.
@@ -65,8 +59,9 @@ using SolveObserver = std::function<void(int iteration, std::span<const double> 
 /// A solver set up once for one operator (which must outlive it), for any number of right-hand sides.
 class KrigingSystem {
  public:
-  /// Throws std::invalid_argument when the matrix is singular to working precision and a Cholesky factor was asked for,
-  /// telling the nugget that would help, and std::invalid_argument when a dense matrix would not fit.
+  /// Throws std::invalid_argument, telling the nugget that would help, when the matrix is singular: on a torus without
+  /// a nugget whenever there are as many unknowns as pixels, because one noise drives all channels; otherwise when a
+  /// Cholesky factor has a pivot that is rounding. Throws std::invalid_argument above most_dense_unknowns.
   KrigingSystem(const KrigingOperator& op, const SolveOptions& options);
   ~KrigingSystem();
   KrigingSystem(KrigingSystem&&) noexcept;
