@@ -120,7 +120,7 @@ ImageInfo read_image_info(const std::filesystem::path& file) {
   return {{spec.width, spec.height}, classify(file, spec).color};
 }
 
-ReadResult read_image(const std::filesystem::path& file) {
+ReadResult read_image(const std::filesystem::path& file, const ReadOptions& options) {
   const auto input = open(file);
   const OIIO::ImageSpec& spec = input->spec();
   const auto [color, alpha, maps] = classify(file, spec);
@@ -137,14 +137,15 @@ ReadResult read_image(const std::filesystem::path& file) {
   int target = 0;
   for (std::size_t c = 0; c < channels; ++c) {
     if (static_cast<int>(c) == alpha) {
-      for (std::size_t i = c; i < samples.size(); i += channels) {
+      for (std::size_t i = c; i < samples.size() && !options.any_alpha; i += channels) {
         if (samples[i] != samples[c]) {
           reject(file, fmt::format("has an alpha channel that varies ({} at the first pixel, {} at x {}, y {}); "
                                    "flatten it first",
                                    samples[c], samples[i], i / channels % width, i / channels / width));
         }
       }
-      result.notes.push_back(fmt::format("{}: dropped a constant alpha channel", file.filename().string()));
+      result.notes.push_back(fmt::format("{}: dropped {} alpha channel", file.filename().string(),
+                                         options.any_alpha ? "the" : "a constant"));
       continue;
     }
     for (std::size_t y = 0; y < height; ++y) {
@@ -156,6 +157,7 @@ ReadResult read_image(const std::filesystem::path& file) {
     }
     ++target;
   }
+  if (options.non_finite) return result;
   if (const auto bad = find_non_finite(result.image)) {
     reject(file, fmt::format("sample {} at x {}, y {}, channel {} is not finite",
                              result.image.at(bad->channel, bad->x, bad->y), bad->x, bad->y, bad->channel));

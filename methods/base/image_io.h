@@ -19,12 +19,18 @@ struct ReadResult {
   std::vector<ImageMap> maps = {};  ///< of an EXR file with channels named as by image_maps.h, in the file's order
 };
 
+/// What is accepted besides.
+struct ReadOptions {
+  bool non_finite = false;  ///< samples that are NaN or infinite
+  bool any_alpha = false;   ///< an alpha channel that varies: dropped like a constant one
+};
+
 /// Reads PNG, JPEG, TIFF or EXR: 8 and 16 bit, half and float, palette, grey, RGB, and RGBA or grey + alpha whose alpha
 /// is constant (dropped, with a note); and a stack of maps without alpha, of at most 8 channels in all. Throws
 /// std::invalid_argument naming the file and what was expected when it is missing, a folder, empty, not a picture,
 /// truncated, larger than 2^28 samples, CMYK, of any other number of channels, has a varying alpha, or holds a sample
 /// that is not finite.
-ReadResult read_image(const std::filesystem::path& file);
+ReadResult read_image(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// Width, height and channels as read_image would deliver them, without decoding pixels where possible.
 struct ImageInfo {

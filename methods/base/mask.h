@@ -31,7 +31,8 @@ class Mask {
 };
 
 /// Every pixel within `distance` (the larger of the distances across and down) of one in the set, around the edges of
-/// the raster when it is a torus.
+/// the raster when it is a torus. Time does not depend on the distance. Throws std::invalid_argument for a distance
+/// below 0.
 Mask dilate(const Mask& mask, int distance, bool torus = false);
 
 /// Pixels that are in a and not in b. Throws std::invalid_argument when sizes differ.
@@ -54,7 +55,7 @@ struct Rectangle {
   friend bool operator==(const Rectangle&, const Rectangle&) = default;
 };
 
-/// The smallest rectangle that holds all pixels; they are at least one.
+/// The smallest rectangle that holds all pixels. Throws std::invalid_argument when there are none.
 Rectangle bounding_box(std::span<const Pixel> pixels);
 
 /// What is known of a picture: a linear operator with its data. Pixels in `missing` are unknown, the others are those

@@ -196,6 +196,31 @@ TEST(ReadImage, AConstantAlphaIsDroppedWithANote) {
   EXPECT_EQ(read_image(folder / "alpha.exr").notes.size(), 1U);
 }
 
+TEST(ReadImage, AVaryingAlphaIsDroppedWhenAskedFor) {
+  const ScratchFolder folder;
+  const auto file = folder / "alpha.png";
+  ImageSpec spec(40, 9, 4, TypeDesc::UINT8);
+  spec.alpha_channel = 3;
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  write_picture(file, spec, [](int c, int x, int y) { return c == 3 ? (x > y ? 1.0F : 0.0F) : eight_bits(c, x, y); });
+  const ReadResult result = read_image(file, {.any_alpha = true});
+  ASSERT_EQ(result.image.channels(), 3);
+  for (int x = 0; x < 40; ++x) EXPECT_EQ(result.image.at(1, x, 5), eight_bits(1, x, 5)) << x;
+  EXPECT_THAT(result.notes, testing::ElementsAre("alpha.png: dropped the alpha channel"));
+}
+
+TEST(ReadImage, SamplesThatAreNotFiniteAreReadWhenAskedFor) {
+  const ScratchFolder folder;
+  const auto file = folder / "holes.exr";
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  write_picture(file, ImageSpec(40, 9, 1, TypeDesc::FLOAT),
+                [&](int c, int x, int y) { return x == 7 ? nan : beyond_one(c, x, y); });
+  expect_refused(file, "not finite");
+  const Image image = read_image(file, {.non_finite = true}).image;
+  EXPECT_TRUE(std::isnan(image.at(0, 7, 3)));
+  EXPECT_EQ(image.at(0, 8, 3), beyond_one(0, 8, 3));
+}
+
 TEST(ReadImage, AVaryingAlphaIsRefused) {
   const ScratchFolder folder;
   for (const int channels : {2, 4}) {
