@@ -48,21 +48,27 @@ inline std::optional<std::filesystem::path> folder_from(const char* variable) {
   return value == nullptr ? std::nullopt : std::optional<std::filesystem::path>(value);
 }
 
-/// Values of a float64 .npy file, row by row.
+/// Values of a float32 or float64 .npy file, row by row.
 inline std::vector<double> read_npy(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::stringstream bytes;
   bytes << in.rdbuf();
   const std::string all = bytes.str();
-  if (all.size() < 10 || all.find("'<f8'") == std::string::npos ||
+  const bool single_precision = all.find("'<f4'") != std::string::npos;
+  if (all.size() < 10 || (!single_precision && all.find("'<f8'") == std::string::npos) ||
       all.find("'fortran_order': False") == std::string::npos) {
-    ADD_FAILURE() << file << " is not a row-by-row float64 .npy file";
+    ADD_FAILURE() << file << " is not a row-by-row float32 or float64 .npy file";
     return {};
   }
   const std::size_t header = 10 + static_cast<unsigned char>(all[8]) + 256U * static_cast<unsigned char>(all[9]);
-  std::vector<double> values((all.size() - header) / sizeof(double));
-  std::memcpy(values.data(), all.data() + header, values.size() * sizeof(double));
-  return values;
+  const auto copied = [&](auto values) {
+    std::memcpy(values.data(), all.data() + header, values.size() * sizeof(values[0]));
+    return values;
+  };
+  const std::size_t size = all.size() - header;
+  if (!single_precision) return copied(std::vector<double>(size / sizeof(double)));
+  const std::vector<float> values = copied(std::vector<float>(size / sizeof(float)));
+  return {values.begin(), values.end()};
 }
 
 /// Largest distance between the empirical distribution of `values` and a continuous distribution function, times
