@@ -36,12 +36,12 @@ ExemplarInfo find_stack(const ExemplarCatalog& catalog, const std::string& names
   return info;
 }
 
-Exemplar load_stack(const ExemplarInfo& info, std::vector<std::string>* notes) {
+Exemplar load_stack(const ExemplarInfo& info, std::vector<std::string>* notes, const ReadOptions& options) {
   std::vector<Image> pictures;
   std::vector<ImageMap> maps;
   int channels = 0;
   for (const ExemplarInfo& part : info.maps) {
-    Exemplar loaded = load_exemplar(part, notes);
+    Exemplar loaded = load_exemplar(part, notes, options);
     if (!pictures.empty() && loaded.pixels.extent() != pictures.front().extent()) {
       throw std::invalid_argument(fmt::format("{} has {}x{} pixels and {} has {}x{}: expected maps of one size",
                                               origin_of_map(info.maps.front()), pictures.front().width(),

@@ -14,6 +14,6 @@ ExemplarInfo find_stack(const ExemplarCatalog& catalog, const std::string& names
 
 /// The maps of `info` in order. A file that is a stack itself gives its own maps. Throws std::invalid_argument naming
 /// both files when sizes differ, the name of two maps of one name, and the number when there are more than 8 channels.
-Exemplar load_stack(const ExemplarInfo& info, std::vector<std::string>* notes);
+Exemplar load_stack(const ExemplarInfo& info, std::vector<std::string>* notes, const ReadOptions& options = {});
 
 }  // namespace textonbench

@@ -15,7 +15,6 @@
 #include "experiments/exemplar_stack.h"
 #include "experiments/procedural_exemplars.h"
 #include "experiments/provenance.h"
-#include "methods/base/image_io.h"
 #include "methods/base/params.h"
 
 namespace textonbench {
@@ -251,10 +250,10 @@ std::string exemplar_sha256(const ExemplarInfo& info) {
   return sha256_of_file(info.file);
 }
 
-Exemplar load_exemplar(const ExemplarInfo& info, std::vector<std::string>* notes) {
+Exemplar load_exemplar(const ExemplarInfo& info, std::vector<std::string>* notes, const ReadOptions& options) {
   require_available(info);
   if (!info.maps.empty()) {
-    return load_stack(info, notes);
+    return load_stack(info, notes, options);
   }
   if (info.file.empty()) {
     const ProceduralExemplar& exemplar = find_procedural(info.name);
@@ -263,7 +262,7 @@ Exemplar load_exemplar(const ExemplarInfo& info, std::vector<std::string>* notes
   if (const auto wrong = mismatch(info.file, info.expected_sha256)) {
     throw std::invalid_argument(fmt::format("exemplar \"{}\": {}", info.name, *wrong));
   }
-  ReadResult result = read_image(info.file);
+  ReadResult result = read_image(info.file, options);
   if (notes != nullptr) {
     notes->insert(notes->end(), result.notes.begin(), result.notes.end());
   }

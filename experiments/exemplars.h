@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "methods/base/exemplar.h"
+#include "methods/base/image_io.h"
 
 namespace textonbench {
 
@@ -57,7 +58,9 @@ ExemplarInfo find_exemplar(const ExemplarCatalog& catalog, const std::string& na
 std::string exemplar_sha256(const ExemplarInfo& info);
 
 /// Reads (or makes) the pixels. `notes` receives what image_io changed. Throws when the file is not the expected one;
-/// of a stack also when sizes differ, a name comes twice, or there are more than 8 channels.
-Exemplar load_exemplar(const ExemplarInfo& info, std::vector<std::string>* notes = nullptr);
+/// of a stack also when sizes differ, a name comes twice, or there are more than 8 channels. Files are read with
+/// `options`.
+Exemplar load_exemplar(const ExemplarInfo& info, std::vector<std::string>* notes = nullptr,
+                       const ReadOptions& options = {});
 
 }  // namespace textonbench

@@ -12,6 +12,7 @@
 namespace textonbench {
 namespace {
 
+constexpr auto plain_pause = std::chrono::milliseconds(5000);
 constexpr const char* erase_line = "\r\x1b[K";
 
 }  // namespace
@@ -41,7 +42,6 @@ Progress::~Progress() {
 double Progress::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
 void Progress::advance(const std::string& failure) {
-  constexpr auto plain_pause = std::chrono::milliseconds(5000);
   ++done_;
   if (!failure.empty()) {
     ++failed_;
@@ -73,6 +73,28 @@ void Progress::print() {
   } else {
     fmt::print(stderr, "{}\n", state());
   }
+}
+
+StatusLine::StatusLine(bool show) : show_(show), terminal_(isatty(STDERR_FILENO) == 1) {}
+
+StatusLine::~StatusLine() { erase(); }
+
+bool StatusLine::due() const { return show_ && Clock::now() >= next_; }
+
+void StatusLine::tell(const std::string& text) {
+  if (!due()) return;
+  next_ = Clock::now() + (terminal_ ? std::chrono::milliseconds(100) : plain_pause);
+  standing_ = terminal_;
+  if (terminal_) {
+    fmt::print(stderr, "{}{}", erase_line, text);
+  } else {
+    fmt::print(stderr, "{}\n", text);
+  }
+}
+
+void StatusLine::erase() {
+  if (standing_) fmt::print(stderr, "{}", erase_line);
+  standing_ = false;
 }
 
 void Progress::write_log(const std::string& text) {

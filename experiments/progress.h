@@ -42,4 +42,26 @@ class Progress {
   Clock::time_point start_ = Clock::now(), printed_ = start_, logged_ = start_;
 };
 
+/// What a piece of work of unknown length is at: nothing in the first two seconds, then on a terminal one line that is
+/// rewritten, elsewhere a plain line every few seconds. On standard error.
+class StatusLine {
+ public:
+  explicit StatusLine(bool show);
+  StatusLine(const StatusLine&) = delete;
+  StatusLine& operator=(const StatusLine&) = delete;
+  ~StatusLine();
+
+  /// True when a line told now would be printed.
+  bool due() const;
+  void tell(const std::string& text);
+  /// Leaves the place to other lines.
+  void erase();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  bool show_, terminal_, standing_ = false;
+  Clock::time_point next_ = Clock::now() + std::chrono::seconds(2);
+};
+
 }  // namespace textonbench

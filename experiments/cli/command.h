@@ -35,6 +35,7 @@ struct Command {
 Command list_command(CLI::App& app, const GlobalOptions& globals);
 Command fit_command(CLI::App& app, const GlobalOptions& globals);
 Command synth_command(CLI::App& app, const GlobalOptions& globals);
+Command inpaint_command(CLI::App& app, const GlobalOptions& globals);
 Command measure_command(CLI::App& app, const GlobalOptions& globals);
 Command run_command(CLI::App& app, const GlobalOptions& globals);
 Command merge_command(CLI::App& app, const GlobalOptions& globals);

@@ -50,10 +50,10 @@ int run(int argc, char** argv) {
   std::vector<Command> commands;
   for (const auto make :
        {textonbench::cli::list_command, textonbench::cli::fit_command, textonbench::cli::synth_command,
-        textonbench::cli::measure_command, textonbench::cli::run_command, textonbench::cli::merge_command,
-        textonbench::cli::figures_command, textonbench::cli::report_command, textonbench::cli::claims_command,
-        textonbench::cli::compare_command, textonbench::cli::baseline_command, textonbench::cli::export_command,
-        textonbench::cli::fps_command}) {
+        textonbench::cli::inpaint_command, textonbench::cli::measure_command, textonbench::cli::run_command,
+        textonbench::cli::merge_command, textonbench::cli::figures_command, textonbench::cli::report_command,
+        textonbench::cli::claims_command, textonbench::cli::compare_command, textonbench::cli::baseline_command,
+        textonbench::cli::export_command, textonbench::cli::fps_command}) {
     commands.push_back(make(app, globals));
   }
   try {

@@ -15,6 +15,7 @@
 #include "experiments/cli/command.h"
 #include "experiments/cli/fitted.h"
 #include "experiments/cli/gpu_options.h"
+#include "experiments/cli/sample_file.h"
 #include "experiments/execute.h"
 #include "experiments/frame_timing.h"
 #include "experiments/model_file.h"
@@ -93,23 +94,6 @@ void draw_bands(const Draw& draw, const Fitted& fitted, const std::filesystem::p
     progress.advance("");
   }
   writer->finish();
-}
-
-/// One file, or of a stack that is not written as EXR one file a map: STEM_MAP.png.
-std::vector<std::filesystem::path> write_sample(const Image& sample, std::span<const ImageMap> maps,
-                                                const std::filesystem::path& output) {
-  if (maps.empty() || output.extension() == ".exr") {
-    write_image(sample, output, maps);
-    return {output};
-  }
-  const std::vector<Image> pictures = split_maps(sample, maps);
-  std::vector<std::filesystem::path> files;
-  for (std::size_t i = 0; i < maps.size(); ++i) {
-    const std::string name = fmt::format("{}_{}{}", output.stem().string(), maps[i].name, output.extension().string());
-    files.push_back(output.parent_path() / name);
-    write_image(pictures[i], files.back());
-  }
-  return files;
 }
 
 std::unique_ptr<Renderer> make_renderer(const SynthOptions& options, const Fitted& fitted, Context& context,

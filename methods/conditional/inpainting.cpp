@@ -41,8 +41,8 @@ Image known_part(const Image& u, const Mask& missing) {
 }
 
 GaussianField field_in(const Image& u, const Mask& missing, const Rectangle& part) {
-  if (part.x < 0 || part.y < 0 || part.size.width < 1 || part.size.height < 1 || part.x + part.size.width > u.width() ||
-      part.y + part.size.height > u.height()) {
+  if (part.x < 0 || part.y < 0 || part.size.width < 1 || part.size.height < 1 || part.x > u.width() - part.size.width ||
+      part.y > u.height() - part.size.height) {
     throw std::invalid_argument(fmt::format("a clean part {},{},{},{} of a picture of {}x{}: expected one inside it",
                                             part.x, part.y, part.size.width, part.size.height, u.width(), u.height()));
   }

@@ -78,6 +78,9 @@ class Inpainting final : public Model, public Conditional {
 /// A reason when `domain` is not the raster of the picture.
 std::optional<std::string> refuse_other_raster(Extent picture, const Domain& domain);
 
+/// Of the entry's options, all but `mask`, `missing` and `model`.
+InpaintingOptions inpainting_options(const Params& params);
+
 MethodEntry inpainting_entry();
 
 }  // namespace textonbench

@@ -70,18 +70,6 @@ std::span<const ParamSpec> inpainting_params() {
   return specs;
 }
 
-InpaintingOptions inpainting_options(const Params& params) {
-  InpaintingOptions options;
-  options.border = static_cast<int>(params.integer("border"));
-  options.periodic = params.text("covariance") == "torus";
-  options.nugget = params.number("nugget");
-  options.solve = {.solver = kriging_solver(params.text("solver")),
-                   .tolerance = params.number("tolerance"),
-                   .iterations = static_cast<int>(params.integer("iterations"))};
-  if (!params.text("clean").empty()) options.clean = parse_rectangle(params.text("clean"));
-  return options;
-}
-
 std::optional<std::string> refuse(const Problem& problem, const Params&, const Domain& domain) {
   if (problem.observed == nullptr) return "inpainting needs a mask of what is missing, and has none";
   return refuse_other_raster(problem.exemplar.pixels.extent(), domain);
@@ -103,6 +91,18 @@ std::optional<std::string> refuse_other_raster(Extent picture, const Domain& dom
         picture.width, picture.height);
   }
   return std::nullopt;
+}
+
+InpaintingOptions inpainting_options(const Params& params) {
+  InpaintingOptions options;
+  options.border = static_cast<int>(params.integer("border"));
+  options.periodic = params.text("covariance") == "torus";
+  options.nugget = params.number("nugget");
+  options.solve = {.solver = kriging_solver(params.text("solver")),
+                   .tolerance = params.number("tolerance"),
+                   .iterations = static_cast<int>(params.integer("iterations"))};
+  if (!params.text("clean").empty()) options.clean = parse_rectangle(params.text("clean"));
+  return options;
 }
 
 MethodEntry inpainting_entry() {
