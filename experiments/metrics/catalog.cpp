@@ -8,6 +8,7 @@
 #include "experiments/metrics/color_covariance.h"
 #include "experiments/metrics/cramer_von_mises.h"
 #include "experiments/metrics/frame_metrics.h"
+#include "experiments/metrics/kriging_catalog.h"
 #include "experiments/metrics/metric.h"
 #include "experiments/metrics/model_error.h"
 #include "experiments/metrics/modulus_and_phase.h"
@@ -348,7 +349,7 @@ std::span<const MetricEntry> metric_catalog() {
   static const std::vector<MetricEntry> catalog = [] {
     std::vector<MetricEntry> entries(general_metrics.begin(), general_metrics.end());
     for (const std::span<const MetricEntry> more :
-         {spot_identity_metrics(), spline_identity_metrics(), frame_metrics()}) {
+         {spot_identity_metrics(), spline_identity_metrics(), frame_metrics(), kriging_metrics()}) {
       entries.insert(entries.end(), more.begin(), more.end());
     }
     return entries;
