@@ -143,27 +143,42 @@ namespace {
 template <int channels>
 void multiply(const SpectrumColumns& block, int i, std::size_t n, std::span<const std::vector<double>> diagonal,
               std::span<const Bins> off_diagonal) {
-  for (int y = 0; y < block.height; ++y) {
+  constexpr int pairs = channels * (channels - 1) / 2;
+  double* p[channels];
+  const double* own[channels];
+  const double* between[pairs + 1];
+  for (int c = 0; c < channels; ++c) {
+    p[c] = reinterpret_cast<double*>(block.column(c, i));
+    own[c] = diagonal[static_cast<std::size_t>(c)].data() + n;
+  }
+  for (int k = 0; k < pairs; ++k) {
+    between[k] = reinterpret_cast<const double*>(off_diagonal[static_cast<std::size_t>(k)].data() + n);
+  }
+  // The columns and the spectra do not overlap.
+#pragma GCC ivdep
+  for (std::ptrdiff_t y = 0; y < block.height; ++y) {
     double re[channels], im[channels], out_re[channels], out_im[channels];
     for (int c = 0; c < channels; ++c) {
-      const std::complex<double> p = block.column(c, i)[y];
-      re[c] = p.real();
-      im[c] = p.imag();
-      const double g = diagonal[static_cast<std::size_t>(c)][n + y];
-      out_re[c] = g * re[c];
-      out_im[c] = g * im[c];
+      re[c] = p[c][2 * y];
+      im[c] = p[c][2 * y + 1];
+      out_re[c] = own[c][y] * re[c];
+      out_im[c] = own[c][y] * im[c];
     }
-    std::size_t pair = 0;
+    int k = 0;
     for (int c = 0; c < channels; ++c) {
-      for (int d = c + 1; d < channels; ++d, ++pair) {
-        const std::complex<double> g = off_diagonal[pair][n + y];
-        out_re[c] += g.real() * re[d] - g.imag() * im[d];
-        out_im[c] += g.real() * im[d] + g.imag() * re[d];
-        out_re[d] += g.real() * re[c] + g.imag() * im[c];
-        out_im[d] += g.real() * im[c] - g.imag() * re[c];
+      for (int d = c + 1; d < channels; ++d, ++k) {
+        const double g_re = between[k][2 * y];
+        const double g_im = between[k][2 * y + 1];
+        out_re[c] += g_re * re[d] - g_im * im[d];
+        out_im[c] += g_re * im[d] + g_im * re[d];
+        out_re[d] += g_re * re[c] + g_im * im[c];
+        out_im[d] += g_re * im[c] - g_im * re[c];
       }
     }
-    for (int c = 0; c < channels; ++c) block.column(c, i)[y] = {out_re[c], out_im[c]};
+    for (int c = 0; c < channels; ++c) {
+      p[c][2 * y] = out_re[c];
+      p[c][2 * y + 1] = out_im[c];
+    }
   }
 }
 
