@@ -90,7 +90,7 @@ std::unique_ptr<const Inpainting> set_up(const InpaintOptions& asked, const Exem
 SolveObserver tell_iterations(StatusLine& line, const std::string& what, const SolveOptions& options) {
   return [&line, what, options](int iteration, std::span<const double>, double residual) {
     if (!line.due()) return;
-    line.tell(fmt::format("{}: iteration {} of at most {}, residual {:.1e} (tolerance {:.0e})", what, iteration,
+    line.tell(fmt::format("{}: iteration {} of at most {}, residual {:.1e} (tolerance {})", what, iteration,
                           options.iterations, residual, options.tolerance));
   };
 }
@@ -99,7 +99,7 @@ void warn_if_not_converged(const SolveSummary& summary, const std::string& what,
   if (summary.converged()) return;
   const bool preconditioned = summary.solver == KrigingSolver::schwarz;
   fmt::print(stderr,
-             "textonbench: warning: {} was not solved to the tolerance of {:.0e}: {} stopped after {} iterations at a "
+             "textonbench: warning: {} was not solved to the tolerance of {}: {} stopped after {} iterations at a "
              "residual of {:.1e}, and the picture may break at the borders of what was missing; give it more "
              "--iterations, {}or --nugget 1e-4\n",
              what, options.tolerance, name_of(summary.solver), summary.iterations, summary.residual,

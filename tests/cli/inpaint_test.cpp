@@ -1,52 +1,21 @@
-// textonbench inpaint: what it writes, what it tells, and what it refuses.
-#include <fmt/format.h>
+// textonbench inpaint: what it draws and writes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "experiments/execute.h"
-#include "methods/base/image_io.h"
 #include "methods/conditional/inpainting.h"
-#include "tests/cli/program.h"
-#include "tests/temporary_folder.h"
-#include "tests/texture.h"
+#include "tests/cli/inpaint_picture.h"
 
 namespace textonbench::inpaint_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
-using testing::Not;
-using Json = nlohmann::ordered_json;
-using Arguments = std::vector<std::string>;
-
-constexpr Extent size{48, 40};
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-bool in_hole(int x, int y) { return x >= 17 && x < 27 && y >= 12 && y < 20; }
-const char* const hole = "17,12,10,8";
-
-Mask hole_mask() {
-  Mask mask(size);
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) mask.set(x, y, in_hole(x, y));
-  }
-  return mask;
-}
-
-Image mask_picture(const Mask& mask) {
-  Image picture(mask.extent(), 1);
-  for (const Pixel& p : pixels_of(mask)) picture.at(0, p.x, p.y) = 1;
-  return picture;
-}
 
 void expect_same_bits(const Image& a, const Image& b) {
   ASSERT_EQ(a.extent(), b.extent());
@@ -60,36 +29,6 @@ void expect_same_bits(const Image& a, const Image& b) {
     }
   }
 }
-
-class InpaintTest : public testing::Test {
- protected:
-  InpaintTest() : picture_(test_texture(size, 3)) {
-    write_image(picture_, file("u.exr"));
-    write_image(picture_, file("u.png"));
-    write_image(mask_picture(hole_mask()), file("hole.png"));
-  }
-
-  std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
-  Image read(const std::string& name) const { return read_image(file(name)).image; }
-  Outcome run(Arguments arguments) const {
-    arguments.insert(arguments.begin(), "inpaint");
-    return run_program(arguments, {folder_.path()});
-  }
-  Json run_json(Arguments arguments) const {
-    arguments.emplace_back("--json");
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return Json::parse(outcome.out);
-  }
-  void expect_refused(const Arguments& arguments, const testing::Matcher<const std::string&>& message) const {
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.status, 2) << outcome.out;
-    EXPECT_THAT(outcome.err, AllOf(HasSubstr("error: "), message));
-  }
-
-  TemporaryFolder folder_;
-  Image picture_;
-};
 
 TEST_F(InpaintTest, KnownPixelsKeepTheirBitsAndMissingOnesAreDrawn) {
   const Outcome outcome = run({"u.exr", "--rect", hole, "-o", "v.exr", "--seed", "4"});
@@ -126,7 +65,8 @@ TEST_F(InpaintTest, LevelsOfAnEightBitPictureStayTheSame) {
   for (int c = 0; c < 3; ++c) {
     for (int y = 0; y < size.height; ++y) {
       for (int x = 0; x < size.width; ++x) {
-        if (!in_hole(x, y)) ASSERT_EQ(u.at(c, x, y), v.at(c, x, y));
+        if (in_hole(x, y)) continue;
+        ASSERT_EQ(u.at(c, x, y), v.at(c, x, y));
       }
     }
   }
@@ -273,95 +213,6 @@ TEST_F(InpaintTest, MapsOfOneSurfaceAreDrawnTogether) {
   EXPECT_EQ(read("v_height.png").channels(), 1);
   EXPECT_EQ(read("v_kriging_height.png").extent(), size);
   EXPECT_EQ(read("v_strip.png").channels(), 3);
-}
-
-TEST_F(InpaintTest, ASolutionThatIsNotToTheToleranceIsToldWithWhatToDo) {
-  const Outcome outcome =
-      run({"u.exr", "--rect", hole, "-o", "v.exr", "--solver", "normal", "--iterations", "3", "--quiet"});
-  EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("warning"), HasSubstr("3 iterations"), HasSubstr("--iterations"),
-                                 HasSubstr("--solver schwarz"), HasSubstr("--nugget")));
-  EXPECT_TRUE(std::filesystem::exists(file("v.exr")));
-  EXPECT_THAT(run({"u.exr", "--rect", hole, "-o", "v.exr", "--quiet"}).err, testing::IsEmpty());
-}
-
-TEST_F(InpaintTest, ASingularSystemIsToldWithTheNuggetThatHelps) {
-  const Arguments all{"u.exr", "--rect", hole, "--covariance", "torus", "--border", "20", "-o", "v.exr"};
-  expect_refused(all, AllOf(HasSubstr("singular"), HasSubstr("nugget")));
-  Arguments with_nugget = all;
-  with_nugget.insert(with_nugget.end(), {"--nugget", "1e-3"});
-  EXPECT_EQ(run(with_nugget).status, 0);
-}
-
-TEST_F(InpaintTest, RefusesMasksThatDoNotFit) {
-  write_image(Image({48, 41}, 1), file("other_size.png"));
-  expect_refused({"u.exr", "--mask", "other_size.png", "-o", "v.exr"},
-                 AllOf(HasSubstr("other_size.png"), HasSubstr("48x41"), HasSubstr("48x40")));
-  write_image(mask_picture(Mask(size)), file("nothing.png"));
-  expect_refused({"u.exr", "--mask", "nothing.png", "-o", "v.exr"}, HasSubstr("no pixel is missing"));
-  write_image(mask_picture(Mask(size, true)), file("everything.png"));
-  expect_refused({"u.exr", "--mask", "everything.png", "-o", "v.exr"}, HasSubstr("every pixel is missing"));
-  expect_refused({"u.exr", "--rect", "40,0,9,5", "-o", "v.exr"}, AllOf(HasSubstr("40,0,9,5"), HasSubstr("48x40")));
-  expect_refused({"u.exr", "--rect", "4,0,9", "-o", "v.exr"}, HasSubstr("x,y,w,h"));
-  expect_refused({"u.exr", "--mask", "hols", "-o", "v.exr"}, AllOf(HasSubstr("\"hols\""), HasSubstr("holes")));
-  expect_refused({"u.exr", "-o", "v.exr"}, AllOf(HasSubstr("--mask"), HasSubstr("--rect")));
-  expect_refused({"u.exr", "--mask", "hole.png", "--rect", hole, "-o", "v.exr"},
-                 AllOf(HasSubstr("--mask"), HasSubstr("--rect")));
-  expect_refused({"u.exr", "--rect", hole, "--missing", "5", "-o", "v.exr"}, HasSubstr("--missing"));
-  EXPECT_FALSE(std::filesystem::exists(file("v.exr")));
-}
-
-TEST_F(InpaintTest, RefusesPicturesThatTellNoModel) {
-  expect_refused({"u.exr", "--rect", "0,0,48,39", "-o", "v.exr"},
-                 AllOf(HasSubstr("48 known pixels"), HasSubstr("at least 64")));
-  Image flat(size, 3);
-  flat.at(1, 20, 15) = 1;  // missing
-  write_image(flat, file("flat.exr"));
-  expect_refused({"flat.exr", "--rect", hole, "-o", "v.exr"}, AllOf(HasSubstr("flat.exr"), HasSubstr("one color")));
-  write_image(test_texture(size, 1), file("gray.png"));
-  expect_refused({"u.exr", "--rect", hole, "--exemplar", "gray.png", "-o", "v.exr"},
-                 AllOf(HasSubstr("3 channels"), HasSubstr("gray"), HasSubstr("of 1")));
-  expect_refused({"gray.png", "--rect", hole, "--exemplar", "u.exr", "-o", "v.exr"}, HasSubstr("of 3"));
-  expect_refused({"missing.png", "--rect", hole, "-o", "v.exr"}, HasSubstr("missing.png"));
-  expect_refused({"u.exr", "--rect", hole, "--exemplar", "missing.png", "-o", "v.exr"}, HasSubstr("missing.png"));
-}
-
-TEST_F(InpaintTest, RefusesOptionsOutOfRange) {
-  for (const auto& [option, value] : std::vector<std::pair<std::string, std::string>>{{"--border", "0"},
-                                                                                      {"--border", "two"},
-                                                                                      {"--nugget", "-1"},
-                                                                                      {"--nugget", "nan"},
-                                                                                      {"--solver", "gauss"},
-                                                                                      {"--covariance", "sphere"},
-                                                                                      {"--tolerance", "2"},
-                                                                                      {"--iterations", "0"}}) {
-    expect_refused({"u.exr", "--rect", hole, fmt::format("{}={}", option, value), "-o", "v.exr"},
-                   AllOf(HasSubstr(option.substr(2)), HasSubstr(value), HasSubstr("expected")));
-  }
-  EXPECT_EQ(run({"u.exr", "--rect", hole, "--samples", "0", "-o", "v.exr"}).status, 2);
-}
-
-TEST_F(InpaintTest, AnOutputThatCannotBeWrittenLeavesEarlierFiles) {
-  std::ofstream(file("v.png")) << "earlier";
-  std::ofstream(file("v.jpg")) << "earlier";
-  std::filesystem::create_directory(file("folder.png"));
-  expect_refused({"u.exr", "--rect", hole, "-o", "v.jpg"}, AllOf(HasSubstr("v.jpg"), HasSubstr(".png or .exr")));
-  expect_refused({"u.exr", "--rect", hole, "-o", "nowhere/v.png"}, HasSubstr("nowhere/v.png: cannot be written"));
-  expect_refused({"u.exr", "--rect", hole, "-o", "folder.png"}, HasSubstr("folder.png: cannot be written"));
-  expect_refused({"u.exr", "--mask", "everything", "-o", "v.png"}, HasSubstr("everything"));
-  const Outcome full = run_program({"inpaint", "u.exr", "--rect", hole, "-o", "v.png"},
-                                   {.folder = folder_.path(), .largest_file = 1024});
-  EXPECT_EQ(full.status, 2);
-  EXPECT_THAT(full.err, HasSubstr("v.png: cannot be written"));
-  EXPECT_EQ(content_of(file("v.png")), "earlier");
-  EXPECT_EQ(content_of(file("v.jpg")), "earlier");
-}
-
-TEST_F(InpaintTest, HelpEndsWithExamples) {
-  const Outcome outcome = run({"--help"});
-  EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(outcome.out, AllOf(HasSubstr("not zero in any channel means missing"), HasSubstr("--nugget"),
-                                 HasSubstr("textonbench inpaint photo.png --mask"), Not(HasSubstr("--model"))));
 }
 
 }  // namespace textonbench::inpaint_test
