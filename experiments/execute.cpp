@@ -12,6 +12,7 @@
 
 #include "experiments/metrics/gaussian_limit.h"
 #include "experiments/metrics/metric.h"
+#include "experiments/observation.h"
 #include "experiments/pictures.h"
 #include "experiments/provenance.h"
 #include "methods/base/image_io.h"
@@ -90,6 +91,7 @@ class Execution {
         drawer_(drawer),
         method_(find_method(spec.method)),
         params_(method_.params, spec.params),
+        observed_(observation(method_, spec.params, exemplar.pixels.extent())),
         domain_{.size = spec.size.area() > 0 ? spec.size : exemplar.pixels.extent(),
                 .step = spec.step,
                 .periodic = spec.periodic} {}
@@ -130,7 +132,9 @@ class Execution {
   }
 
  private:
-  Problem problem() const { return {.exemplar = exemplar_, .second = second_}; }
+  Problem problem() const {
+    return {.exemplar = exemplar_, .second = second_, .observed = observed_ ? &*observed_ : nullptr};
+  }
   Seed part(std::string_view name) const { return derive(Seed{spec_.seed}, name); }
 
   /// The first call also plans transforms and touches fresh memory, so a quick analysis is repeated and the first call
@@ -224,6 +228,7 @@ class Execution {
   FrameDrawer* drawer_;
   const MethodEntry& method_;
   Params params_;
+  std::optional<Observation> observed_;
   Domain domain_;
   std::unique_ptr<Model> model_;
   double analyze_seconds_ = 0, synthesize_seconds_ = 0;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "experiments/conditional_pictures.h"
 #include "methods/base/parallel.h"
 #include "methods/base/spectrum.h"
 
@@ -82,7 +83,7 @@ Image texton_picture(const PictureSource& source) {
   return picture;
 }
 
-constexpr std::array entries{
+constexpr std::array general_entries{
     PictureEntry{"sample", "Sample", sample<0>},
     PictureEntry{"sample_2", "Second sample", sample<1>},
     PictureEntry{"sample_3", "Third sample", sample<2>},
@@ -109,11 +110,20 @@ constexpr std::array entries{
 
 }  // namespace
 
-std::span<const PictureEntry> picture_catalog() { return entries; }
+std::span<const PictureEntry> picture_catalog() {
+  static const std::vector<PictureEntry> all = [] {
+    std::vector<PictureEntry> entries(general_entries.begin(), general_entries.end());
+    const std::span<const PictureEntry> more = conditional_pictures();
+    entries.insert(entries.end(), more.begin(), more.end());
+    return entries;
+  }();
+  return all;
+}
 
 const PictureEntry& find_picture(std::string_view name) {
   std::vector<std::string_view> names;
-  for (const PictureEntry& entry : entries) {
+  names.reserve(picture_catalog().size());
+  for (const PictureEntry& entry : picture_catalog()) {
     if (entry.name == name) return entry;
     names.push_back(entry.name);
   }

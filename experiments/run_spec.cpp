@@ -12,6 +12,7 @@
 
 #include "experiments/metrics/metric.h"
 #include "experiments/provenance.h"
+#include "methods/conditional/masks.h"
 
 namespace textonbench {
 namespace {
@@ -145,6 +146,10 @@ std::map<std::string, std::string> hash_named(const MethodEntry& method,
       } else if (option.unit == "file") {
         const std::string& file = std::get<std::string>(given->second);
         if (!file.empty()) hashes.emplace(option.name, sha256_of_file(file));
+      } else if (option.unit == "mask") {
+        if (const auto file = mask_file(std::get<std::string>(given->second))) {
+          hashes.emplace(option.name, sha256_of_file(*file));
+        }
       }
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(fmt::format("option {}: {}", option.name, error.what()));

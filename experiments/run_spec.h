@@ -36,9 +36,9 @@ struct RunSpec {
   int memory_limit_mb = 0;  ///< 0: a share of the machine's memory
 };
 
-/// SHA-256 of what every option names whose unit is "file" or "exemplar" and that is not empty: two runs with the same
-/// path and other content are not the same. Throws std::invalid_argument with the option for a file that cannot be
-/// read or an exemplar that is not here.
+/// SHA-256 of what every option names whose unit is "file", "exemplar" or "mask" and that names something: two runs
+/// with the same path and other content are not the same. Throws std::invalid_argument with the option for a file that
+/// cannot be read or an exemplar that is not here.
 std::map<std::string, std::string> hash_named(const MethodEntry& method,
                                               const std::map<std::string, ParamValue>& params,
                                               const ExemplarCatalog& catalog);

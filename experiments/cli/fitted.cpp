@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "experiments/execute.h"
+#include "experiments/observation.h"
 #include "experiments/provenance.h"
 
 namespace textonbench::cli {
@@ -24,7 +25,8 @@ Fitted fit_to_exemplar(const ModelOptions& asked, bool quiet) {
   require_usable(exemplar);
   std::optional<Exemplar> second;
   if (const auto named = second_exemplar(method, params.values(), catalog)) second = load_exemplar(*named);
-  const Problem problem{exemplar, second ? &*second : nullptr};
+  const std::optional<Observation> observed = observation(method, params.values(), exemplar.pixels.extent());
+  const Problem problem{exemplar, second ? &*second : nullptr, observed ? &*observed : nullptr};
   const Domain domain = asked.read_domain(method, problem, params);
   if (const std::optional<std::string> reason = method.refuses(problem, params, domain)) {
     throw std::invalid_argument(fmt::format("{} cannot do this: {}", asked.method, *reason));

@@ -9,6 +9,7 @@
 #include "experiments/cli/table.h"
 #include "experiments/gpu_run.h"
 #include "experiments/metrics/metric.h"
+#include "experiments/observation.h"
 #include "experiments/provenance.h"
 
 namespace textonbench::cli {
@@ -55,7 +56,9 @@ RunSpec make_spec(const MeasureOptions& options, const ExemplarInfo& exemplar, c
   const Exemplar pixels = load_exemplar(exemplar);
   std::optional<Exemplar> second;
   if (const auto named = second_exemplar(method, spec.params, catalog)) second = load_exemplar(*named);
-  spec.periodic = options.model.read_domain(method, {pixels, second ? &*second : nullptr}, params).periodic;
+  const std::optional<Observation> observed = observation(method, spec.params, pixels.pixels.extent());
+  const Problem problem{pixels, second ? &*second : nullptr, observed ? &*observed : nullptr};
+  spec.periodic = options.model.read_domain(method, problem, params).periodic;
   spec.step = options.model.step;
   spec.seed = options.model.seed;
   spec.samples = options.samples;

@@ -76,9 +76,14 @@ std::optional<std::string> refuse(const Problem& problem, const Params&, const D
 }
 
 std::unique_ptr<Model> analyze(const Problem& problem, const Params& params, Seed) {
+  require_usable(problem.exemplar);
   if (problem.observed == nullptr) throw std::invalid_argument("inpainting: expected a mask of what is missing");
-  return std::make_unique<Inpainting>(problem.exemplar.pixels, problem.observed->missing, problem.second,
-                                      inpainting_options(params));
+  try {
+    return std::make_unique<Inpainting>(problem.exemplar.pixels, problem.observed->missing, problem.second,
+                                        inpainting_options(params));
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", problem.exemplar.name, error.what()));
+  }
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ std::vector<std::vector<Pixel>> parts_of(const Mask& mask) {
 }
 
 TEST(MasksTest, RaggedPixelsAndLinesMissExactlyThePercentage) {
-  for (const std::string& shape : {"ragged", "pixels", "lines"}) {
+  for (const char* shape : {"ragged", "pixels", "lines"}) {
     for (const Extent extent : {Extent{3, 3}, Extent{40, 25}, Extent{131, 97}}) {
       for (const double percent : {0.001, 1.0, 5.0, 33.3, 50.0, 99.0, 99.999}) {
         const auto asked = std::llround(percent / 100 * static_cast<double>(extent.area()));
