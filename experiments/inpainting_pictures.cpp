@@ -97,7 +97,7 @@ Image picture_strip(std::span<const CaptionedPicture> pictures) {
       // A frame, because a panel may be as white as the paper.
       for (int y = -1; y <= shown.height; ++y) {
         const auto row = strip.row(c, caption_height + y).subspan(static_cast<std::size_t>(inset - 1));
-        std::ranges::fill(row.first(static_cast<std::size_t>(shown.width + 2)), frame_value);
+        std::ranges::fill(row.first(static_cast<std::size_t>(shown.width) + 2), frame_value);
       }
       for (int y = 0; y < shown.height; ++y) {
         std::ranges::copy(picture.row(c, y), strip.row(c, caption_height + y).begin() + inset);
