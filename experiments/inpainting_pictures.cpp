@@ -12,6 +12,7 @@ namespace {
 constexpr int caption_font = 14;
 constexpr int caption_height = 24;
 constexpr int strip_gap = 8;
+constexpr float frame_value = 0.6F;
 constexpr int least_side = 160;
 constexpr int most_side = 512;
 
@@ -93,6 +94,11 @@ Image picture_strip(std::span<const CaptionedPicture> pictures) {
     const Image picture = resize(entry.picture, shown);
     const int inset = left + (cell - shown.width) / 2;
     for (int c = 0; c < strip.channels(); ++c) {
+      // A frame, because a panel may be as white as the paper.
+      for (int y = -1; y <= shown.height; ++y) {
+        const auto row = strip.row(c, caption_height + y).subspan(static_cast<std::size_t>(inset - 1));
+        std::ranges::fill(row.first(static_cast<std::size_t>(shown.width) + 2), frame_value);
+      }
       for (int y = 0; y < shown.height; ++y) {
         std::ranges::copy(picture.row(c, y), strip.row(c, caption_height + y).begin() + inset);
       }

@@ -26,8 +26,8 @@ struct CaptionedPicture {
   Image picture;
 };
 
-/// The pictures from left to right on white under their captions; small ones are enlarged by a whole number, large ones
-/// reduced to 512 pixels. All have the size of the first, and 1 or 3 channels, as many as it. Throws
+/// The pictures, framed, from left to right on white under their captions; small ones are enlarged by a whole number,
+/// large ones reduced to 512 pixels. All have the size of the first, and 1 or 3 channels, as many as it. Throws
 /// std::invalid_argument otherwise, and for none.
 Image picture_strip(std::span<const CaptionedPicture> pictures);
 

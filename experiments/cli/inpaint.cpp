@@ -37,6 +37,13 @@ struct InpaintOptions {
 /// Options of the command that are the method's: all but those that name the mask and another exemplar.
 bool is_own_option(const ParamSpec& spec) { return spec.name != "mask" && spec.name != "model"; }
 
+/// What --help shows for the value of an option.
+std::string kind_of(const ParamSpec& spec) {
+  if (!spec.choices.empty()) return fmt::format("{}", fmt::join(spec.choices, "|"));
+  if (spec.name == "clean") return "X,Y,W,H";
+  return std::holds_alternative<std::int64_t>(spec.default_value) ? "INT" : "NUMBER";
+}
+
 Params read_inpainting_params(const InpaintOptions& asked) {
   const MethodEntry entry = inpainting_entry();
   std::map<std::string, ParamValue> values;
@@ -50,6 +57,11 @@ std::string mask_description(const InpaintOptions& asked) {
     throw std::invalid_argument(
         fmt::format("inpaint: {} --mask and --rect; expected one of the two, for what is missing",
                     asked.mask.empty() ? "neither" : "both"));
+  }
+  const bool is_shape = !asked.mask.empty() && !mask_file(asked.mask) && !asked.mask.starts_with("rect:");
+  if (asked.given.contains("missing") && !is_shape) {
+    throw std::invalid_argument(
+        "inpaint: --missing with a mask that says itself what is missing; expected --mask with the name of a shape");
   }
   return asked.mask.empty() ? fmt::format("rect:{}", fmt::join(asked.rectangles, ";")) : asked.mask;
 }
@@ -78,7 +90,7 @@ std::unique_ptr<const Inpainting> set_up(const InpaintOptions& asked, const Exem
 SolveObserver tell_iterations(StatusLine& line, const std::string& what, const SolveOptions& options) {
   return [&line, what, options](int iteration, std::span<const double>, double residual) {
     if (!line.due()) return;
-    line.tell(fmt::format("{}: iteration {} of at most {}, residual {:.1e} (tolerance {:.0e})", what, iteration,
+    line.tell(fmt::format("{}: iteration {} of at most {}, residual {:.1e} (tolerance {})", what, iteration,
                           options.iterations, residual, options.tolerance));
   };
 }
@@ -87,7 +99,7 @@ void warn_if_not_converged(const SolveSummary& summary, const std::string& what,
   if (summary.converged()) return;
   const bool preconditioned = summary.solver == KrigingSolver::schwarz;
   fmt::print(stderr,
-             "textonbench: warning: {} was not solved to the tolerance of {:.0e}: {} stopped after {} iterations at a "
+             "textonbench: warning: {} was not solved to the tolerance of {}: {} stopped after {} iterations at a "
              "residual of {:.1e}, and the picture may break at the borders of what was missing; give it more "
              "--iterations, {}or --nugget 1e-4\n",
              what, options.tolerance, name_of(summary.solver), summary.iterations, summary.residual,
@@ -195,9 +207,6 @@ int inpaint(const InpaintOptions& asked, const GlobalOptions& globals) {
   require_output(asked.output);
   const Exemplar picture = load_named(asked.image, globals.quiet, {.non_finite = true});
   const Mask missing = make_mask(description, params.number("missing"), picture.pixels.extent());
-  if (asked.given.contains("missing") && (mask_file(description) || !asked.rectangles.empty())) {
-    throw std::invalid_argument("--missing with a mask that says itself what is missing: expected the name of a shape");
-  }
   StatusLine line(!globals.quiet);
   const std::unique_ptr<const Inpainting> model = set_up(asked, picture, missing, options, globals.quiet);
 
@@ -238,7 +247,8 @@ Command inpaint_command(CLI::App& app, const GlobalOptions& globals) {
       "What is missing: a picture of the same size, of which a pixel that is not zero in any channel means missing "
       "(alpha counts for nothing, the traces of JPEG do), or a shape: square, holes, ragged, pixels, lines");
   command->add_option("--rect", options->rectangles, "Instead of --mask: a missing rectangle x,y,w,h; may be repeated")
-      ->allow_extra_args(false);
+      ->allow_extra_args(false)
+      ->type_name("X,Y,W,H");
   for (const ParamSpec& spec : inpainting_entry().params) {
     if (!is_own_option(spec)) continue;
     const std::string name(spec.name);
@@ -247,7 +257,7 @@ Command inpaint_command(CLI::App& app, const GlobalOptions& globals) {
         ->add_option_function<std::string>(
             fmt::format("--{}", name), [options, name](const std::string& text) { options->given[name] = text; },
             usual.empty() ? std::string(spec.help) : fmt::format("{} ({})", spec.help, usual))
-        ->type_name(spec.choices.empty() ? "" : fmt::format("{}", fmt::join(spec.choices, "|")));
+        ->type_name(kind_of(spec));
   }
   command->add_option("--exemplar", options->other,
                       "Exemplar or picture that the model is estimated from, instead of the known pixels of IMAGE");
