@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "experiments/inpainting_pictures.h"
+
 namespace textonbench {
 namespace {
 
@@ -25,24 +27,18 @@ const Image& first_sample(const PictureSource& source) {
 /// What the first sample adds to the kriging component.
 Image innovation(const PictureSource& source) {
   const Conditional& law = conditional(source);
-  const Image kriging = law.kriging();
-  Image result = first_sample(source);
-  for (int c = 0; c < result.channels(); ++c) {
+  const Image& sample = first_sample(source);
+  std::vector<double> mean;
+  const auto known = static_cast<double>(sample.extent().area() - law.missing().count());
+  for (int c = 0; c < sample.channels(); ++c) {
     double sum = 0;
-    std::int64_t known = 0;
-    for (int y = 0; y < result.height(); ++y) {
-      for (int x = 0; x < result.width(); ++x) {
-        if (law.missing().at(x, y)) continue;
-        sum += static_cast<double>(result.at(c, x, y));
-        ++known;
-      }
+    for (int y = 0; y < sample.height(); ++y) {
+      for (int x = 0; x < sample.width(); ++x)
+        sum += law.missing().at(x, y) ? 0.0 : static_cast<double>(sample.at(c, x, y));
     }
-    const auto mean = static_cast<float>(sum / static_cast<double>(known));
-    for (int y = 0; y < result.height(); ++y) {
-      for (int x = 0; x < result.width(); ++x) result.at(c, x, y) += mean - kriging.at(c, x, y);
-    }
+    mean.push_back(sum / known);
   }
-  return result;
+  return innovation_picture(sample, law.kriging(), law.missing(), mean);
 }
 
 /// As much again on every side of the missing pixels, where the picture has it.
@@ -57,10 +53,12 @@ Image hole(const PictureSource& source) {
 }
 
 constexpr std::array conditional_entries{
-    PictureEntry{"masked", "Masked input",
-                 [](const PictureSource& s) { return marked(s.target.exemplar.pixels, conditional(s).missing()); }},
-    PictureEntry{"conditioning", "Conditioning points",
-                 [](const PictureSource& s) { return only(s.target.exemplar.pixels, conditional(s).conditioning()); }},
+    PictureEntry{
+        "masked", "Masked input",
+        [](const PictureSource& s) { return without_pixels(s.target.exemplar.pixels, conditional(s).missing()); }},
+    PictureEntry{
+        "conditioning", "Conditioning points",
+        [](const PictureSource& s) { return only_pixels(s.target.exemplar.pixels, conditional(s).conditioning()); }},
     PictureEntry{"kriging", "Kriging component", [](const PictureSource& s) { return conditional(s).kriging(); }},
     PictureEntry{"innovation", "Innovation component", innovation},
     PictureEntry{"unconditional", "Sample given nothing",
@@ -71,26 +69,5 @@ constexpr std::array conditional_entries{
 }  // namespace
 
 std::span<const PictureEntry> conditional_pictures() { return conditional_entries; }
-
-Image marked(const Image& picture, const Mask& missing) {
-  constexpr std::array magenta{1.0F, 0.0F, 1.0F};
-  Image result = picture;
-  for (const Pixel& p : pixels_of(missing)) {
-    for (int c = 0; c < result.channels(); ++c) {
-      result.at(c, p.x, p.y) = result.channels() == 3 ? magenta[static_cast<std::size_t>(c)] : 1.0F;
-    }
-  }
-  return result;
-}
-
-Image only(const Image& picture, const Mask& shown) {
-  Image result(picture.extent(), picture.channels());
-  for (int c = 0; c < result.channels(); ++c) {
-    for (int y = 0; y < result.height(); ++y) {
-      for (int x = 0; x < result.width(); ++x) result.at(c, x, y) = shown.at(x, y) ? picture.at(c, x, y) : 0.5F;
-    }
-  }
-  return result;
-}
 
 }  // namespace textonbench

@@ -58,9 +58,11 @@ class SmallProblem {
 
   explicit SmallProblem(const Image& exemplar)
       : picture_(crop(exemplar, 0, 0, {std::min(16, exemplar.width()), std::min(16, exemplar.height())})),
-        model_(picture_, hole(picture_.extent()), nullptr, {.border = border}) {
+        model_(picture_, hole(picture_.extent()), nullptr, {.border = border, .nugget = 1e-3}) {
     const KrigingOperator& op = model_.kriging_operator();
-    const auto covariance = [&](int c, int d, const Pixel& v) { return summed_covariance(op.field().spot, c, d, v); };
+    const auto covariance = [&](int c, int d, const Pixel& v) {
+      return summed_covariance(op.field().spot, c, d, v) + (c == d && v == Pixel{} ? op.field().nugget_variance : 0);
+    };
     const auto c = op.conditioning_pixels();
     const auto m = op.missing_pixels();
     const Eigen::LLT<Eigen::MatrixXd> factor(matrix_of(op.channels(), c, c, covariance));
@@ -233,8 +235,9 @@ std::optional<double> kriging_variance_ratio(const Model& model, const Target&, 
   const Inpainting* law = as_inpainting(model);
   if (law == nullptr) return std::nullopt;
   const KrigingOperator& op = law->kriging_operator();
-  const KrigingOperator wide(
-      op.field(), difference(dilate(law->missing(), dense_border, op.field().periodic), law->missing()), law->missing());
+  const KrigingOperator wide(op.field(),
+                             difference(dilate(law->missing(), dense_border, op.field().periodic), law->missing()),
+                             law->missing());
   const std::optional<double> own = conditional_variance(op);
   const std::optional<double> least = conditional_variance(wide);
   return own && least ? std::optional(*own / *least) : std::nullopt;

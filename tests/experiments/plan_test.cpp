@@ -317,6 +317,21 @@ TEST_F(PlanTest, ChangedContentOfAFileThatAnOptionNamesIsAnotherRun) {
   EXPECT_NE(plan_table(table).runs.at(0).id, before.id);
 }
 
+/// A mask may be a description, which is told in full by its text, or a file.
+TEST_F(PlanTest, MasksThatAreFilesCountByTheirContent) {
+  const std::string inpainting = "method = \"inpainting\"\nexemplars = \"ring\"\nperiodic = false\n";
+  for (const char* shape : {"square", "rect:1,2,3,4"}) {
+    const Plan named = plan_table(fmt::format("{}params.mask = \"{}\"", inpainting, shape));
+    EXPECT_TRUE(named.runs.at(0).spec.file_sha256.empty()) << shape;
+  }
+  const std::filesystem::path mask = home_.path() / "mask.png";
+  const std::string table = fmt::format("{}params.mask = \"{}\"", inpainting, mask.string());
+  EXPECT_THAT(table_error(table), AllOf(HasSubstr("option mask: "), HasSubstr("mask.png: cannot be read")));
+  std::ofstream(mask) << "one";
+  EXPECT_EQ(plan_table(table).runs.at(0).spec.file_sha256,
+            (std::map<std::string, std::string>{{"mask", sha256("one")}}));
+}
+
 TEST_F(PlanTest, AnotherRunDoesNotChangeAnId) {
   const Plan one = plan_table(rpn_ + "seeds = 2");
   const Plan many = plan_table("method = [\"adsn\", \"rpn\"]\nexemplars = [\"grass\", \"ring\"]\nseeds = [1, 2]");
