@@ -36,11 +36,12 @@ TEST(MetricCatalog, NamesAndOrderAreThoseThatScriptsKnow) {
           "hashed_cell_correlation", "counter_cell_correlation", "cell_time_ratio", "texton_time_ratio",
           "exemplar_patch_distance", "frame_ms", "frame_ns_per_pixel", "frame_fetches_per_second",
           "frame_ceiling_fraction", "frame_color_ratio", "software_frame_ms", "software_ns_per_pixel",
-          "software_color_ratio", "sampler_filter_error", "supersampling_error", "kriging_residual", "kriging_iterations",
-          "kriging_unknowns", "kriging_setup_seconds", "kriging_solve_seconds", "kriging_iteration_seconds",
-          "kriging_bytes", "kriging_error", "kriging_condition_number", "kriging_border_distance",
-          "kriging_variance_ratio", "conditional_mean_deviation", "conditional_covariance_deviation",
-          "kriging_innovation_correlation", "hole_covariance_ratio", "estimate_bias"));
+          "software_color_ratio", "sampler_filter_error", "supersampling_error", "kriging_residual",
+          "kriging_iterations", "kriging_unknowns", "kriging_setup_seconds", "kriging_solve_seconds",
+          "kriging_iteration_seconds", "kriging_bytes", "kriging_error", "kriging_condition_number",
+          "kriging_border_distance", "kriging_variance_ratio", "conditional_mean_deviation",
+          "conditional_covariance_deviation", "kriging_innovation_correlation", "hole_covariance_ratio",
+          "estimate_bias"));
 }
 
 TEST(MetricCatalog, EveryEntryIsDescribedAndCanBeMeasuredAtItsLevel) {
