@@ -227,7 +227,7 @@ std::optional<double> kriging_border_distance(const Model& model, const Target& 
   const KrigingOperator& op = law->kriging_operator();
   const Image& u = target.exemplar.pixels;
   const Eigen::VectorXd wide = as_vector(OtherBorder(*law, wide_border).kriging(u));
-  const Eigen::VectorXd own = as_vector(op.extend(law->system().solve(law->right_side()).k));
+  const Eigen::VectorXd own = as_vector(op.extend(law->kriging_solution().k));
   return std::sqrt((own - wide).squaredNorm() / static_cast<double>(own.size()) / mean_variance(op.field()));
 }
 

@@ -16,16 +16,10 @@ constexpr std::size_t most_unknowns = 5000;
 
 const Inpainting* inpainting(const Model& model) { return dynamic_cast<const Inpainting*>(&model); }
 
-std::optional<SolveSummary> solved(const Model& model) {
-  const Inpainting* law = inpainting(model);
-  if (law == nullptr) return std::nullopt;
-  return law->system().solve(law->right_side()).summary;
-}
-
 template <class Value>
 std::optional<double> of_summary(const Model& model, const Value& value) {
-  const std::optional<SolveSummary> summary = solved(model);
-  return summary ? std::optional(static_cast<double>(value(*summary))) : std::nullopt;
+  const Inpainting* law = inpainting(model);
+  return law == nullptr ? std::nullopt : std::optional(static_cast<double>(value(law->kriging_solution().summary)));
 }
 
 Eigen::VectorXd to_vector(const std::vector<double>& values) {
@@ -111,7 +105,7 @@ std::optional<double> kriging_error(const Model& model, const Target&, const Dom
   const std::vector<double> right_side = law->right_side();
   const KrigingSystem dense(op, {.solver = KrigingSolver::dense});
   const Eigen::VectorXd exact = to_vector(op.extend(dense.solve(right_side).k));
-  const Eigen::VectorXd found = to_vector(op.extend(law->system().solve(right_side).k));
+  const Eigen::VectorXd found = to_vector(op.extend(law->kriging_solution().k));
   const double square = (found - exact).squaredNorm() / static_cast<double>(exact.size());
   return std::sqrt(square / mean_variance(op.field()));
 }

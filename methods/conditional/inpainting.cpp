@@ -130,7 +130,12 @@ Inpainting::Sample Inpainting::kriging_sample(const SolveObserver& observer) con
   return {filled(operator_.extend(solution.k)), solution.summary};
 }
 
-Image Inpainting::kriging() const { return kriging_sample().image; }
+const KrigingSystem::Solution& Inpainting::kriging_solution() const {
+  std::call_once(solved_, [&] { solution_ = system_.solve(right_side()); });
+  return solution_;
+}
+
+Image Inpainting::kriging() const { return filled(operator_.extend(kriging_solution().k)); }
 
 Image Inpainting::innovation(Seed seed) const {
   const KrigingOperator::Values f = operator_.simulate(seed);

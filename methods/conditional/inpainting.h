@@ -8,6 +8,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,6 +60,8 @@ class Inpainting final : public Model, public Conditional {
   Sample kriging_sample(const SolveObserver& observer = {}) const;
   /// (u − m)_C, as unknowns.
   std::vector<double> right_side() const;
+  /// The solution of that right side, found once.
+  const KrigingSystem::Solution& kriging_solution() const;
 
   const KrigingOperator& kriging_operator() const { return operator_; }
   const KrigingSystem& system() const { return system_; }
@@ -73,6 +76,8 @@ class Inpainting final : public Model, public Conditional {
   Mask missing_, conditioning_;
   KrigingOperator operator_;
   KrigingSystem system_;
+  mutable std::once_flag solved_;
+  mutable KrigingSystem::Solution solution_;
 };
 
 /// A reason when `domain` is not the raster of the picture.
