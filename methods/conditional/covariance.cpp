@@ -154,8 +154,6 @@ void multiply(const SpectrumColumns& block, int i, std::size_t n, std::span<cons
   for (int k = 0; k < pairs; ++k) {
     between[k] = reinterpret_cast<const double*>(off_diagonal[static_cast<std::size_t>(k)].data() + n);
   }
-  // The columns and the spectra do not overlap.
-#pragma GCC ivdep
   for (std::ptrdiff_t y = 0; y < block.height; ++y) {
     double re[channels], im[channels], out_re[channels], out_im[channels];
     for (int c = 0; c < channels; ++c) {

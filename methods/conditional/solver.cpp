@@ -59,28 +59,6 @@ void require_rank(const KrigingOperator& op) {
   }
 }
 
-class DenseFactor {
- public:
-  explicit DenseFactor(const KrigingOperator& op) : matrix_(op.unknowns(), op.unknowns()) {
-    std::vector<int> all(static_cast<std::size_t>(op.points()));
-    std::iota(all.begin(), all.end(), 0);
-    op.fill_matrix(all, op.covariance().table(op.box().size), matrix_.data());
-    const double largest = matrix_.diagonal().maxCoeff();
-    factor_.emplace(matrix_);
-    const double least = matrix_.diagonal().minCoeff();
-    if (factor_->info() != Eigen::Success || singular_pivots(least * least, largest, op.unknowns())) {
-      fail_not_positive(op.unknowns());
-    }
-  }
-
-  Vector solve(const Vector& right) const { return factor_->solve(right); }
-  std::size_t bytes() const { return static_cast<std::size_t>(matrix_.size()) * sizeof(double); }
-
- private:
-  Eigen::MatrixXd matrix_;
-  std::optional<Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>> factor_;
-};
-
 struct Iteration {
   Vector k;
   int count = 0;
@@ -149,6 +127,29 @@ KrigingSolver kriging_solver(std::string_view name) {
   throw std::invalid_argument(
       fmt::format("solver \"{}\": expected auto, dense, cg, schwarz, circulant or normal", name));
 }
+
+/// The Cholesky factor of the whole matrix.
+class KrigingSystem::DenseFactor {
+ public:
+  explicit DenseFactor(const KrigingOperator& op) : matrix_(op.unknowns(), op.unknowns()) {
+    std::vector<int> all(static_cast<std::size_t>(op.points()));
+    std::iota(all.begin(), all.end(), 0);
+    op.fill_matrix(all, op.covariance().table(op.box().size), matrix_.data());
+    const double largest = matrix_.diagonal().maxCoeff();
+    factor_.emplace(matrix_);
+    const double least = matrix_.diagonal().minCoeff();
+    if (factor_->info() != Eigen::Success || singular_pivots(least * least, largest, op.unknowns())) {
+      fail_not_positive(op.unknowns());
+    }
+  }
+
+  Vector solve(const Vector& right) const { return factor_->solve(right); }
+  std::size_t bytes() const { return static_cast<std::size_t>(matrix_.size()) * sizeof(double); }
+
+ private:
+  Eigen::MatrixXd matrix_;
+  std::optional<Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>> factor_;
+};
 
 struct KrigingSystem::Parts {
   const KrigingOperator& op;

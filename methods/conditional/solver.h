@@ -79,6 +79,7 @@ class KrigingSystem {
   std::size_t bytes() const;
 
  private:
+  class DenseFactor;
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
