@@ -22,8 +22,8 @@
 
 #include "benchmarks/timing.h"
 #include "methods/base/image_io.h"
+#include "methods/base/masks.h"
 #include "methods/conditional/inpainting.h"
-#include "methods/conditional/masks.h"
 #include "methods/spectral/adsn.h"
 
 namespace textonbench {

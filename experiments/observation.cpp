@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "methods/conditional/masks.h"
+#include "methods/base/masks.h"
 
 namespace textonbench {
 

@@ -9,7 +9,7 @@
 
 namespace textonbench {
 
-/// The observation that the option of unit "mask" describes (methods/conditional/masks.h), of `missing` percent where
+/// The observation that the option of unit "mask" describes (methods/base/masks.h), of `missing` percent where
 /// the method has that option; nothing for a method without such an option. Throws std::invalid_argument with the
 /// option.
 std::optional<Observation> observation(const MethodEntry& method, const std::map<std::string, ParamValue>& params,

@@ -12,7 +12,7 @@
 
 #include "experiments/metrics/metric.h"
 #include "experiments/provenance.h"
-#include "methods/conditional/masks.h"
+#include "methods/base/masks.h"
 
 namespace textonbench {
 namespace {

@@ -17,8 +17,8 @@
 #include "experiments/progress.h"
 #include "experiments/provenance.h"
 #include "methods/base/image_io.h"
+#include "methods/base/masks.h"
 #include "methods/conditional/inpainting.h"
-#include "methods/conditional/masks.h"
 
 namespace textonbench::cli {
 namespace {

@@ -24,7 +24,7 @@ struct ParamSpec {
   ParamValue default_value;
   std::string_view unit;  ///< "pixel", "1/pixel", … ; empty when it has none; "file": a path,
                           ///< whose content counts; "exemplar": the name of one, or the path of a picture;
-                          ///< "mask": a description (methods/conditional/masks.h), or the path of a picture
+                          ///< "mask": a description (methods/base/masks.h), or the path of a picture
   std::string_view help;
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();

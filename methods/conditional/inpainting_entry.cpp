@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "methods/base/masks.h"
 #include "methods/conditional/inpainting.h"
-#include "methods/conditional/masks.h"
 
 namespace textonbench {
 namespace {

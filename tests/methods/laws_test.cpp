@@ -8,7 +8,7 @@
 #include <map>
 #include <numbers>
 
-#include "methods/conditional/masks.h"
+#include "methods/base/masks.h"
 #include "methods/method.h"
 #include "tests/texture.h"
 

@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "experiments/metrics/conditional_law.h"
+#include "methods/base/masks.h"
 #include "methods/conditional/inpainting.h"
-#include "methods/conditional/masks.h"
 #include "methods/spectral/adsn.h"
 #include "tests/sanitizer.h"
 #include "tests/texture.h"

@@ -1,5 +1,5 @@
 // Masks by name: how much is missing, and in which shapes.
-#include "methods/conditional/masks.h"
+#include "methods/base/masks.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

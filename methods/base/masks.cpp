@@ -1,4 +1,4 @@
-#include "methods/conditional/masks.h"
+#include "methods/base/masks.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
