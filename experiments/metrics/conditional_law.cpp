@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include "methods/conditional/inpainting.h"
@@ -71,6 +72,9 @@ class SmallProblem {
     for (Eigen::Index i = 0; i < mean_.size(); ++i)
       mean_[i] += op.field().mean[static_cast<std::size_t>(i / std::ssize(m))];
     covariance_.compute(matrix_of(op.channels(), m, m, covariance) - mc * factor.solve(mc.transpose()));
+    if (factor.info() != Eigen::Success || covariance_.info() != Eigen::Success) {
+      throw std::runtime_error("the covariance of the small problem is singular: expected an exemplar with texture");
+    }
   }
 
   const Inpainting& model() const { return model_; }

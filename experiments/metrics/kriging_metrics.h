@@ -21,7 +21,8 @@ std::optional<double> kriging_iteration_seconds(const Model& model, const Target
 /// Bytes that the solver keeps beside the operator.
 std::optional<double> kriging_bytes(const Model& model, const Target& target, const Domain& domain);
 
-// By dense algebra: null above 5000 unknowns.
+// By dense algebra: null above 5000 unknowns. Of a singular matrix the error throws std::invalid_argument, and the
+// condition number is null.
 
 /// Root mean square over the missing pixels of the difference between the kriging component and that of the dense
 /// solution, over the standard deviation of the model.
