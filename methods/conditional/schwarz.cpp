@@ -92,9 +92,9 @@ void bisect(std::span<const Pixel> pixels, std::span<int> points, std::size_t mo
 class PointGrid {
  public:
   PointGrid(std::span<const Pixel> pixels, int cell) : pixels_(pixels), cell_(cell) {
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-      columns_ = std::max(columns_, pixels[i].x / cell + 1);
-      rows_ = std::max(rows_, pixels[i].y / cell + 1);
+    for (const Pixel& pixel : pixels) {
+      columns_ = std::max(columns_, pixel.x / cell + 1);
+      rows_ = std::max(rows_, pixel.y / cell + 1);
     }
     cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     for (std::size_t i = 0; i < pixels.size(); ++i) {
