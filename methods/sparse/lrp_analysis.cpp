@@ -1,0 +1,197 @@
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "methods/base/parallel.h"
+#include "methods/sparse/lrp.h"
+
+namespace textonbench {
+namespace {
+
+constexpr int least_side = 32;
+
+/// Colors of one bin: unit vectors and their probabilities.
+struct BinColors {
+  Eigen::MatrixXcd vectors;
+  Eigen::VectorXd chances;
+};
+
+/// Eigenvectors of P(k), each with its part of the trace: the mean of a a* is P(k) / tr P(k).
+BinColors eigen_colors(const Eigen::MatrixXcd& p) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> solver(p);
+  Eigen::VectorXd values = solver.eigenvalues().cwiseMax(0);
+  values /= values.sum();
+  return {solver.eigenvectors(), values};
+}
+
+std::uint32_t as_word(double probability) {
+  return static_cast<std::uint32_t>(std::clamp(std::floor(probability * 0x1p32), 0.0, 0x1p32 - 1));
+}
+
+/// A layer whose bins have the colors that `colors_of` tells, times `amplitude`.
+template <class Colors>
+WaveLayer make_layer(const Stratum& stratum, int channels, int colors, double amplitude, const Colors& colors_of) {
+  WaveLayer layer;
+  layer.spacing = std::llround(stratum.spacing * static_cast<double>(std::int64_t{1} << plane_bits));
+  layer.colors = colors;
+  layer.first.push_back(0);
+  for (const auto& part : stratum.parts) {
+    for (const Pixel& bin : part) {
+      layer.kx.push_back(bin.x);
+      layer.ky.push_back(bin.y);
+    }
+    layer.first.push_back(static_cast<std::uint32_t>(layer.kx.size()));
+  }
+  const auto stride = static_cast<std::size_t>(colors);
+  layer.chance.resize(layer.kx.size() * stride);
+  layer.color.resize(layer.chance.size() * static_cast<std::size_t>(channels));
+  parallel_for(static_cast<int>(layer.kx.size()), [&](int bin) {
+    const auto at = static_cast<std::size_t>(bin);
+    const BinColors found = colors_of(layer.kx[at], layer.ky[at]);
+    double sum = 0;
+    for (int v = 0; v < colors; ++v) {
+      const std::size_t entry = at * stride + static_cast<std::size_t>(v);
+      sum += found.chances[v];
+      layer.chance[entry] = as_word(sum);
+      for (int c = 0; c < channels; ++c) {
+        layer.color[entry * static_cast<std::size_t>(channels) + static_cast<std::size_t>(c)] =
+            std::complex<float>(amplitude * found.vectors(c, v));
+      }
+    }
+  });
+  return layer;
+}
+
+/// Variance of a layer of one wave of amplitude 1, channels summed.
+double unit_variance(const LrpOptions& options) {
+  return options.even_variance ? 0.5 : std::numbers::pi * lrp_window_moments(options.strata.window).radial_energy;
+}
+
+/// Amplitude of each layer's waves; `variance` is σ² of its stratum.
+std::vector<double> amplitudes(const LrpOptions& options, const std::vector<LrpLayer>& layers, double bins) {
+  std::vector<double> wanted;
+  double total = 0, printed = 0;
+  for (const LrpLayer& layer : layers) {
+    const double variance = layer.stratum.energy / bins;
+    const double spread = variance / std::pow(layer.stratum.spacing, 2);
+    total += variance;
+    printed += spread;
+    wanted.push_back(options.amplitude == LrpAmplitude::corrected ? variance : spread);
+  }
+  const double scale = options.amplitude == LrpAmplitude::corrected ? 1 : total / printed;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    wanted[i] = std::sqrt(scale * wanted[i] / (layers[i].stratum.cosines * unit_variance(options)));
+  }
+  return wanted;
+}
+
+Eigen::MatrixXcd at_bin(const WelchSpectrum& spectrum, int kx, int ky) {
+  return spectrum.at(kx, ky < 0 ? ky + spectrum.side() : ky);
+}
+
+template <class Power>
+PowerPlane power_plane(int side, const Power& power) {
+  PowerPlane plane(side);
+  for (const Pixel& bin : plane.half()) plane.set(bin.x, bin.y, std::max(0.0, power(bin)));
+  return plane;
+}
+
+/// Axes of the color space, the columns, from the least variance to the most.
+Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> decorrelate(const WelchSpectrum& spectrum) {
+  const PowerPlane plane(spectrum.side());
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(spectrum.channels(), spectrum.channels());
+  for (const Pixel& bin : plane.half()) {
+    sum += plane.multiplicity(bin) * at_bin(spectrum, bin.x, bin.y).real();
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(sum);
+}
+
+void add_coherent_layers(const LrpOptions& options, const Stream& stream, LrpAnalysis& analysis) {
+  const WelchSpectrum& spectrum = analysis.spectrum;
+  const PowerPlane plane = power_plane(spectrum.side(), [&](const Pixel& bin) {
+    return spectrum.power(bin.x, bin.y < 0 ? bin.y + spectrum.side() : bin.y);
+  });
+  for (Stratum& stratum : stratify(plane, options.strata, stream)) analysis.layers.push_back({std::move(stratum), -1});
+}
+
+void add_independent_layers(const LrpOptions& options, const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>& axes,
+                            const Stream& stream, LrpAnalysis& analysis) {
+  const int channels = analysis.spectrum.channels();
+  for (int axis = channels - 1; axis >= 0; --axis) {
+    if (axes.eigenvalues()[axis] <= 1e-10 * axes.eigenvalues()[channels - 1]) continue;
+    const Eigen::VectorXcd direction = axes.eigenvectors().col(axis).cast<std::complex<double>>();
+    const PowerPlane plane = power_plane(analysis.spectrum.side(), [&](const Pixel& bin) {
+      return (direction.adjoint() * at_bin(analysis.spectrum, bin.x, bin.y) * direction).value().real();
+    });
+    for (Stratum& stratum : stratify(plane, options.strata, stream.child(static_cast<std::uint64_t>(axis)))) {
+      analysis.layers.push_back({std::move(stratum), axis});
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<std::string> refuse_lrp(const Exemplar& exemplar, const LrpOptions& options) {
+  const auto [width, height] = exemplar.pixels.extent();
+  const int smaller = std::min(width, height);
+  if (smaller < least_side) {
+    return fmt::format("lrp of {}x{} pixels: expected sides of at least {} for a power spectrum", width, height,
+                       least_side);
+  }
+  const int side = options.welch.side;
+  if (side != 0 && (side < 8 || side > smaller || !std::has_single_bit(static_cast<unsigned>(side)))) {
+    return fmt::format("lrp by blocks of {} in {}x{} pixels: expected 0, or a power of two from 8 to {}", side, width,
+                       height, smaller);
+  }
+  if (options.strata.cosines < options.strata.strata) {
+    return fmt::format("lrp of {} cosines in {} strata: expected at least one cosine in each", options.strata.cosines,
+                       options.strata.strata);
+  }
+  return std::nullopt;
+}
+
+LrpAnalysis analyze_lrp(const Exemplar& exemplar, const LrpOptions& options, Seed seed) {
+  require_usable(exemplar);
+  if (const auto reason = refuse_lrp(exemplar, options)) {
+    throw std::invalid_argument(fmt::format("{}: {}", exemplar.name, *reason));
+  }
+  const Stream stream = Stream(seed).child("lrp clusters");
+  LrpAnalysis analysis{WelchSpectrum(exemplar.pixels, options.welch), {}, {}};
+  const WelchSpectrum& spectrum = analysis.spectrum;
+  const int channels = spectrum.channels();
+  analysis.field.channels = channels;
+  analysis.field.side_bits = std::countr_zero(static_cast<unsigned>(spectrum.side()));
+  analysis.field.window = options.strata.window;
+  analysis.field.even_variance = options.even_variance;
+
+  const bool coherent = options.color == LrpColor::coherent || channels == 1;
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes;
+  if (coherent) {
+    add_coherent_layers(options, stream, analysis);
+  } else {
+    axes = decorrelate(spectrum);
+    add_independent_layers(options, axes, stream, analysis);
+  }
+  const std::vector<double> amplitude =
+      amplitudes(options, analysis.layers, static_cast<double>(spectrum.side()) * spectrum.side());
+  for (std::size_t i = 0; i < analysis.layers.size(); ++i) {
+    const LrpLayer& layer = analysis.layers[i];
+    if (coherent) {
+      analysis.field.layers.push_back(make_layer(layer.stratum, channels, channels, amplitude[i], [&](int kx, int ky) {
+        return eigen_colors(at_bin(spectrum, kx, ky));
+      }));
+    } else {
+      const BinColors only{axes.eigenvectors().col(layer.axis).cast<std::complex<double>>(), Eigen::VectorXd::Ones(1)};
+      analysis.field.layers.push_back(
+          make_layer(layer.stratum, channels, 1, amplitude[i], [&](int, int) { return only; }));
+    }
+  }
+  return analysis;
+}
+
+}  // namespace textonbench

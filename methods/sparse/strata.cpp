@@ -1,0 +1,292 @@
+#include "methods/sparse/strata.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+namespace textonbench {
+namespace {
+
+int wrap(int k, int side) { return ((k % side) + side) % side; }
+
+/// The set and its mirror image on the whole torus, row after row.
+std::vector<char> whole_plane(const std::vector<Pixel>& bins, int side) {
+  std::vector<char> inside(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+  for (const Pixel& bin : bins) {
+    inside[static_cast<std::size_t>(wrap(bin.y, side) * side + wrap(bin.x, side))] = 1;
+    inside[static_cast<std::size_t>(wrap(-bin.y, side) * side + wrap(-bin.x, side))] = 1;
+  }
+  return inside;
+}
+
+/// Squared distances on the torus to the nearest place that is not inside: along columns, then along rows, where no
+/// more is looked at than can be nearer.
+std::vector<int> squared_distances(const std::vector<char>& inside, int side) {
+  const int far = 2 * side;
+  std::vector<int> column(inside.size(), far), result(inside.size());
+  for (int x = 0; x < side; ++x) {
+    int down = far, up = far;
+    for (int i = 0; i < 2 * side; ++i) {
+      const auto at = static_cast<std::size_t>((i % side) * side + x);
+      down = inside[at] != 0 ? std::min(far, down + 1) : 0;
+      column[at] = std::min(column[at], down);
+      const auto back = static_cast<std::size_t>(((2 * side - 1 - i) % side) * side + x);
+      up = inside[back] != 0 ? std::min(far, up + 1) : 0;
+      column[back] = std::min(column[back], up);
+    }
+  }
+  for (int y = 0; y < side; ++y) {
+    const int* row = column.data() + y * side;
+    for (int x = 0; x < side; ++x) {
+      int best = row[x] * row[x];
+      for (int d = 1; d * d < best && d <= side / 2; ++d) {
+        const int left = row[wrap(x - d, side)], right = row[wrap(x + d, side)];
+        best = std::min(best, d * d + std::min(left * left, right * right));
+      }
+      result[static_cast<std::size_t>(y * side + x)] = best;
+    }
+  }
+  return result;
+}
+
+/// The largest squared distance in the connected piece of each place that is inside.
+std::vector<int> largest_of_piece(const std::vector<char>& inside, const std::vector<int>& distances, int side) {
+  std::vector<int> largest(inside.size(), -1);
+  std::vector<std::size_t> piece;
+  for (std::size_t start = 0; start < inside.size(); ++start) {
+    if (inside[start] == 0 || largest[start] >= 0) continue;
+    piece.assign(1, start);
+    largest[start] = 0;
+    int top = 0;
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+      top = std::max(top, distances[piece[i]]);
+      const int x = static_cast<int>(piece[i]) % side, y = static_cast<int>(piece[i]) / side;
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          const auto at = static_cast<std::size_t>(wrap(y + dy, side) * side + wrap(x + dx, side));
+          if (inside[at] == 0 || largest[at] >= 0) continue;
+          largest[at] = 0;
+          piece.push_back(at);
+        }
+      }
+    }
+    for (const std::size_t at : piece) largest[at] = top;
+  }
+  return largest;
+}
+
+struct Point {
+  double x = 0, y = 0;
+};
+
+double squared_distance(const Pixel& bin, const Point& p) {
+  return std::pow(bin.x - p.x, 2) + std::pow(bin.y - p.y, 2);
+}
+
+/// k-means++: each seed with probability proportional to its squared distance from those before it.
+std::vector<Point> seed_clusters(const std::vector<Pixel>& bins, int parts, RandomSequence& numbers) {
+  std::vector<double> distance(bins.size(), std::numeric_limits<double>::infinity());
+  std::size_t chosen = numbers.below(bins.size());
+  std::vector<Point> centers;
+  for (int k = 0; k < parts; ++k) {
+    centers.push_back({static_cast<double>(bins[chosen].x), static_cast<double>(bins[chosen].y)});
+    double sum = 0;
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+      distance[i] = std::min(distance[i], squared_distance(bins[i], centers.back()));
+      sum += distance[i];
+    }
+    double left = numbers.uniform() * sum;
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+      if (distance[i] <= 0) continue;
+      chosen = i;
+      left -= distance[i];
+      if (left <= 0) break;
+    }
+  }
+  return centers;
+}
+
+int nearest_center(const Pixel& bin, const std::vector<Point>& centers) {
+  int best = 0;
+  for (int k = 1; k < static_cast<int>(centers.size()); ++k) {
+    if (squared_distance(bin, centers[static_cast<std::size_t>(k)]) <
+        squared_distance(bin, centers[static_cast<std::size_t>(best)])) {
+      best = k;
+    }
+  }
+  return best;
+}
+
+/// Gives every empty part the bin that is farthest from the center of a part of several.
+void fill_empty_parts(const std::vector<Pixel>& bins, const std::vector<Point>& centers, std::vector<int>& part) {
+  std::vector<int> size(centers.size());
+  for (const int k : part) ++size[static_cast<std::size_t>(k)];
+  for (std::size_t empty = 0; empty < size.size(); ++empty) {
+    if (size[empty] > 0) continue;
+    std::size_t farthest = bins.size();
+    double most = -1;
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+      const auto k = static_cast<std::size_t>(part[i]);
+      const double d = squared_distance(bins[i], centers[k]);
+      if (size[k] > 1 && d > most) {
+        most = d;
+        farthest = i;
+      }
+    }
+    --size[static_cast<std::size_t>(part[farthest])];
+    part[farthest] = static_cast<int>(empty);
+    ++size[empty];
+  }
+}
+
+}  // namespace
+
+PowerPlane::PowerPlane(int side)
+    : side_(side), values_(static_cast<std::size_t>(side / 2 + 1) * static_cast<std::size_t>(side)) {}
+
+std::size_t PowerPlane::index(int kx, int ky) const {
+  int x = wrap(kx, side_), y = wrap(ky, side_);
+  if (2 * x > side_ || (x == 0 && 2 * y > side_) || (2 * x == side_ && 2 * y > side_)) {
+    x = wrap(-kx, side_);
+    y = wrap(-ky, side_);
+  }
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(side_ / 2 + 1) + static_cast<std::size_t>(x);
+}
+
+std::vector<Pixel> PowerPlane::half() const {
+  std::vector<Pixel> bins;
+  bins.reserve(values_.size());
+  for (int y = 1 - side_ / 2; y <= side_ / 2; ++y) {
+    for (int x = 0; x <= side_ / 2; ++x) {
+      if (y >= 0 || (x > 0 && 2 * x < side_)) bins.push_back({x, y});
+    }
+  }
+  return bins;
+}
+
+int PowerPlane::multiplicity(const Pixel& bin) const {
+  return (bin.x == 0 || 2 * bin.x == side_) && (bin.y == 0 || 2 * bin.y == side_) ? 1 : 2;
+}
+
+double PowerPlane::total() const {
+  double sum = 0;
+  for (const Pixel& bin : half()) sum += multiplicity(bin) * at(bin.x, bin.y);
+  return sum;
+}
+
+std::vector<Pixel> erode_bins(const std::vector<Pixel>& bins, int side, double distance, std::size_t least) {
+  const std::vector<char> inside = whole_plane(bins, side);
+  const std::vector<int> squares = squared_distances(inside, side);
+  const std::vector<int> largest = largest_of_piece(inside, squares, side);
+  const auto at = [side](const Pixel& bin) {
+    return static_cast<std::size_t>(wrap(bin.y, side) * side + wrap(bin.x, side));
+  };
+  const auto eroded = [&](double square) {
+    std::vector<Pixel> rest;
+    for (const Pixel& bin : bins) {
+      if (squares[at(bin)] >= std::min<double>(square, largest[at(bin)])) rest.push_back(bin);
+    }
+    return rest;
+  };
+  std::vector<Pixel> rest = eroded(distance * distance);
+  if (rest.size() >= least) return rest;
+  std::vector<int> steps;
+  for (const Pixel& bin : bins) {
+    if (squares[at(bin)] < distance * distance) steps.push_back(squares[at(bin)]);
+  }
+  std::ranges::sort(steps, std::greater());
+  steps.erase(std::ranges::unique(steps).begin(), steps.end());
+  for (const int square : steps) {
+    rest = eroded(square);
+    if (rest.size() >= least) break;
+  }
+  return rest;
+}
+
+std::vector<std::vector<Pixel>> cluster_bins(const std::vector<Pixel>& bins, int parts, const Stream& stream) {
+  constexpr int most_iterations = 100;
+  RandomSequence numbers(stream);
+  std::vector<Point> centers = seed_clusters(bins, parts, numbers);
+  std::vector<int> part(bins.size(), -1);
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    std::vector<int> next(bins.size());
+    std::ranges::transform(bins, next.begin(), [&](const Pixel& bin) { return nearest_center(bin, centers); });
+    fill_empty_parts(bins, centers, next);
+    if (next == part) break;
+    part = std::move(next);
+    std::vector<int> size(centers.size());
+    std::ranges::fill(centers, Point{});
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+      Point& center = centers[static_cast<std::size_t>(part[i])];
+      center.x += bins[i].x;
+      center.y += bins[i].y;
+      ++size[static_cast<std::size_t>(part[i])];
+    }
+    for (std::size_t k = 0; k < centers.size(); ++k) {
+      centers[k].x /= size[k];
+      centers[k].y /= size[k];
+    }
+  }
+  std::vector<std::vector<Pixel>> result(centers.size());
+  for (std::size_t i = 0; i < bins.size(); ++i) result[static_cast<std::size_t>(part[i])].push_back(bins[i]);
+  return result;
+}
+
+std::vector<Stratum> stratify(const PowerPlane& power, const StrataOptions& options, const Stream& stream) {
+  if (options.strata < 1 || options.cosines < options.strata) {
+    throw std::invalid_argument(
+        fmt::format("{} cosines in {} strata: expected at least one in each", options.cosines, options.strata));
+  }
+  std::vector<Pixel> bins = power.half();
+  const auto power_of = [&](const Pixel& bin) { return power.at(bin.x, bin.y); };
+  double largest = 0;
+  for (const Pixel& bin : bins) largest = std::max(largest, power_of(bin));
+  std::erase_if(bins, [&](const Pixel& bin) { return power_of(bin) <= 1e-12 * largest; });
+  if (bins.empty()) throw std::invalid_argument("a spectrum without power: expected some");
+  std::ranges::stable_sort(bins, std::greater(), power_of);
+
+  // A bin belongs to the share of energy that its middle falls into.
+  const double total = power.total();
+  std::vector<Stratum> strata(static_cast<std::size_t>(options.strata));
+  double before = 0;
+  for (const Pixel& bin : bins) {
+    const int count = power.multiplicity(bin);
+    const double energy = count * power_of(bin);
+    const auto share = static_cast<int>((before + energy / 2) / total * options.strata);
+    Stratum& stratum = strata[static_cast<std::size_t>(std::min(options.strata - 1, share))];
+    stratum.bins.push_back(bin);
+    stratum.area += count;
+    stratum.energy += energy;
+    before += energy;
+  }
+  std::erase_if(strata, [](const Stratum& s) { return s.bins.empty(); });
+
+  // The smallest first: what they cannot take is left for the others.
+  std::vector<std::size_t> order(strata.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return strata[i].bins.size(); });
+  int cosines = options.cosines;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    Stratum& stratum = strata[order[i]];
+    const auto others = static_cast<int>(order.size() - i);
+    stratum.cosines =
+        static_cast<int>(std::min<std::size_t>(stratum.bins.size(), static_cast<std::size_t>(cosines / others)));
+    cosines -= stratum.cosines;
+  }
+  for (std::size_t i = 0; i < strata.size(); ++i) {
+    Stratum& stratum = strata[i];
+    stratum.spacing = power.side() * std::sqrt(stratum.cosines / (2.0 * stratum.area));
+    const double delta = lrp_window_moments(options.window).energy_radius / stratum.spacing * power.side();
+    const auto parts = static_cast<std::size_t>(stratum.cosines);
+    stratum.parts =
+        cluster_bins(erode_bins(stratum.bins, power.side(), delta, parts), stratum.cosines, stream.child(i));
+  }
+  return strata;
+}
+
+}  // namespace textonbench
