@@ -26,6 +26,10 @@ struct Seed {
 /// Philox4x32-10 of a 64-bit key and the counter (index, row), low words first.
 std::array<std::uint32_t, 4> philox_block(std::uint64_t key, std::uint64_t row, std::uint64_t index);
 
+/// out[i] = philox_block(keys[i], row, indices[i]).
+void philox_blocks(std::span<const std::uint64_t> keys, std::uint64_t row, std::span<const std::uint64_t> indices,
+                   std::span<std::array<std::uint32_t, 4>> out);
+
 /// A family of 2^64 rows of 2^66 32-bit words, addressed by (row, index).
 class Stream {
  public:

@@ -93,6 +93,39 @@ TEXTONBENCH_SIMD void phasor_groups(std::uint64_t key, std::uint64_t row, std::u
   }
 }
 
+/// As philox_group(), with a key and an index for each counter.
+TEXTONBENCH_SIMD void philox_lanes(const std::uint64_t* keys, std::uint64_t row, const std::uint64_t* indices,
+                                   std::array<std::uint32_t, 4>* out) {
+  std::uint64_t a[lanes], b[lanes], c[lanes], d[lanes], key0[lanes], key1[lanes];
+#pragma GCC unroll 1
+  for (int i = 0; i < lanes; ++i) {
+    a[i] = indices[i] & 0xFFFFFFFFU;
+    b[i] = indices[i] >> 32U;
+    c[i] = row & 0xFFFFFFFFU;
+    d[i] = row >> 32U;
+    key0[i] = keys[i] & 0xFFFFFFFFU;
+    key1[i] = keys[i] >> 32U;
+  }
+#pragma GCC unroll 1
+  for (int round = 0; round < 10; ++round) {
+#pragma GCC unroll 1
+    for (int i = 0; i < lanes; ++i) {
+      const std::uint64_t p0 = std::uint64_t{0xD2511F53U} * (a[i] & 0xFFFFFFFFU);
+      const std::uint64_t p1 = std::uint64_t{0xCD9E8D57U} * (c[i] & 0xFFFFFFFFU);
+      a[i] = (p1 >> 32U) ^ b[i] ^ key0[i];
+      c[i] = (p0 >> 32U) ^ d[i] ^ key1[i];
+      b[i] = p1 & 0xFFFFFFFFU;
+      d[i] = p0 & 0xFFFFFFFFU;
+      key0[i] = (key0[i] + 0x9E3779B9U) & 0xFFFFFFFFU;
+      key1[i] = (key1[i] + 0xBB67AE85U) & 0xFFFFFFFFU;
+    }
+  }
+  for (int i = 0; i < lanes; ++i) {
+    out[i] = {static_cast<std::uint32_t>(a[i]), static_cast<std::uint32_t>(b[i]), static_cast<std::uint32_t>(c[i]),
+              static_cast<std::uint32_t>(d[i])};
+  }
+}
+
 /// Cuts [first, first + count) into whole groups, written in place, and the partial ones at the ends, copied.
 template <class T, class Groups>
 void fill(std::uint64_t first, std::span<T> out, const Groups& groups) {
@@ -115,6 +148,19 @@ void fill(std::uint64_t first, std::span<T> out, const Groups& groups) {
 }
 
 }  // namespace
+
+void philox_blocks(std::span<const std::uint64_t> keys, std::uint64_t row, std::span<const std::uint64_t> indices,
+                   std::span<std::array<std::uint32_t, 4>> out) {
+  const std::size_t whole = out.size() / lanes * lanes;
+  for (std::size_t i = 0; i < whole; i += lanes) philox_lanes(&keys[i], row, &indices[i], &out[i]);
+  if (whole == out.size()) return;
+  std::uint64_t key[lanes] = {}, index[lanes] = {};
+  std::array<std::uint32_t, 4> blocks[lanes];
+  std::ranges::copy(keys.subspan(whole), key);
+  std::ranges::copy(indices.subspan(whole), index);
+  philox_lanes(key, row, index, blocks);
+  std::copy_n(blocks, out.size() - whole, out.begin() + static_cast<std::ptrdiff_t>(whole));
+}
 
 void fill_normal(const Stream& stream, std::uint64_t row, std::uint64_t first, std::span<float> out) {
   fill(first, out,

@@ -42,17 +42,16 @@ WaveLayer make_layer(const Stratum& stratum, int channels, int colors, double am
   layer.first.push_back(0);
   for (const auto& part : stratum.parts) {
     for (const Pixel& bin : part) {
-      layer.kx.push_back(bin.x);
-      layer.ky.push_back(bin.y);
+      layer.bins.push_back({bin.x, bin.y});
     }
-    layer.first.push_back(static_cast<std::uint32_t>(layer.kx.size()));
+    layer.first.push_back(static_cast<std::uint32_t>(layer.bins.size()));
   }
   const auto stride = static_cast<std::size_t>(colors);
-  layer.chance.resize(layer.kx.size() * stride);
+  layer.chance.resize(layer.bins.size() * stride);
   layer.color.resize(layer.chance.size() * static_cast<std::size_t>(channels));
-  parallel_for(static_cast<int>(layer.kx.size()), [&](int bin) {
+  parallel_for(static_cast<int>(layer.bins.size()), [&](int bin) {
     const auto at = static_cast<std::size_t>(bin);
-    const BinColors found = colors_of(layer.kx[at], layer.ky[at]);
+    const BinColors found = colors_of(layer.bins[at].kx, layer.bins[at].ky);
     double sum = 0;
     for (int v = 0; v < colors; ++v) {
       const std::size_t entry = at * stride + static_cast<std::size_t>(v);

@@ -21,12 +21,16 @@
 #include <span>
 #include <vector>
 
-#include "methods/base/aligned_buffer.h"
 #include "methods/base/impact_grid.h"
 #include "methods/base/random.h"
 #include "methods/sparse/lrp_window.h"
 
 namespace textonbench {
+
+struct WaveBin {
+  std::int32_t kx = 0;
+  std::int32_t ky = 0;
+};
 
 /// The bins that wave j of a cell is drawn of: [first[j], first[j + 1]). Bin b has `colors` colors: color v is taken
 /// with probability (chance[b * colors + v] − chance[b * colors + v − 1]) 2^−32, the last one otherwise, and its
@@ -34,7 +38,7 @@ namespace textonbench {
 struct WaveLayer {
   std::int64_t spacing = 0;  ///< Δ in 2^−22 pixel
   std::vector<std::uint32_t> first;
-  std::vector<std::int32_t> kx, ky;
+  std::vector<WaveBin> bins;
   int colors = 1;
   std::vector<std::uint32_t> chance;
   std::vector<std::complex<float>> color;
@@ -60,17 +64,11 @@ struct WaveField {
   }
 };
 
-/// Waves of one cell, padded to whole vectors by waves of amplitude zero.
-struct WaveCell {
-  static constexpr int vector = 16;
-  int waves = 0;   ///< of the layer
-  int padded = 0;  ///< rounded up to whole vectors
-  AlignedBuffer<std::int32_t> kx, ky;
-  AlignedBuffer<std::uint32_t> phase;
-  AlignedBuffer<float> color;  ///< real parts of channel c from 2 c padded on, imaginary parts `padded` later
-
-  /// Room for the waves of any cell of a layer.
-  WaveCell(const WaveField& field, const WaveLayer& layer);
+/// A wave of a cell.
+struct Wave {
+  WaveBin bin;
+  std::uint32_t phase = 0;                     ///< at the cell's center, 2^−32 turn
+  const std::complex<float>* color = nullptr;  ///< of all channels
 };
 
 /// A layer's lattice and numbers for one seed.
@@ -84,10 +82,13 @@ class WaveLattice {
   std::int64_t nearest_y(std::int64_t y) const;
   std::int64_t center_x(std::int64_t cx) const { return corner_x_ + cx * layer_->spacing; }
   std::int64_t center_y(std::int64_t cy) const { return corner_y_ + cy * layer_->spacing; }
-  /// Waves of cell (cx, cy).
-  void draw(std::int64_t cx, std::int64_t cy, WaveCell& cell) const;
+  /// Waves of the cells (cx, cy), (cx + 1, cy), …, layer().waves() of each, as many as fill `waves`.
+  void draw(std::int64_t cx, std::int64_t cy, std::span<Wave> waves) const;
 
  private:
+  /// Wave j of a cell by its two words.
+  Wave make_wave(std::size_t j, std::uint32_t u, std::uint32_t v) const;
+
   const WaveLayer* layer_;
   int channels_;
   std::uint64_t key_;

@@ -1,10 +1,11 @@
 #include "methods/sparse/wave_points.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <optional>
 
+#include "methods/base/aligned_buffer.h"
 #include "methods/base/image.h"
 #include "methods/base/parallel.h"
 #include "methods/base/portable_math.h"
@@ -12,10 +13,20 @@
 namespace textonbench {
 namespace {
 
-constexpr int lanes = WaveCell::vector;
+constexpr int lanes = 16;
 
 /// Points of one task: its cells are drawn anew.
 constexpr std::size_t task_points = 1024;
+
+/// Waves of one cell, padded to whole vectors by waves of color zero: real parts of channel c from 2 c padded on,
+/// imaginary parts `padded` later.
+struct PaddedCell {
+  int padded;
+  const std::int32_t* kx;
+  const std::int32_t* ky;
+  const std::uint32_t* phase;
+  const float* color;
+};
 
 /// Σ_j of one cell, by channel: values, and slopes along x and y in 1 / bin.
 struct CellSums {
@@ -34,23 +45,23 @@ float sum_lanes(const float* v) {
 }
 
 template <bool slopes>
-[[gnu::always_inline]] inline void sum_cell(const WaveCell& cell, int channels, std::uint32_t turn_x,
+[[gnu::always_inline]] inline void sum_cell(const PaddedCell& cell, int channels, std::uint32_t turn_x,
                                             std::uint32_t turn_y, CellSums& sums) {
   alignas(64) float value[Image::max_channels][lanes] = {};
   alignas(64) float slope_x[slopes ? Image::max_channels : 1][lanes] = {};
   alignas(64) float slope_y[slopes ? Image::max_channels : 1][lanes] = {};
   for (int first = 0; first < cell.padded; first += lanes) {
     alignas(64) float cosine[lanes], sine[lanes];
-    const std::int32_t* kx = cell.kx.data() + first;
-    const std::int32_t* ky = cell.ky.data() + first;
-    const std::uint32_t* phase = cell.phase.data() + first;
+    const std::int32_t* kx = cell.kx + first;
+    const std::int32_t* ky = cell.ky + first;
+    const std::uint32_t* phase = cell.phase + first;
     for (int i = 0; i < lanes; ++i) {
       portable::cos_sin(
           static_cast<std::uint32_t>(kx[i]) * turn_x + static_cast<std::uint32_t>(ky[i]) * turn_y + phase[i], cosine[i],
           sine[i]);
     }
     for (int c = 0; c < channels; ++c) {
-      const float* re = cell.color.data() + 2 * c * cell.padded + first;
+      const float* re = cell.color + 2 * c * cell.padded + first;
       const float* im = re + cell.padded;
       for (int i = 0; i < lanes; ++i) value[c][i] += re[i] * cosine[i] - im[i] * sine[i];
       if constexpr (slopes) {
@@ -71,13 +82,13 @@ template <bool slopes>
   }
 }
 
-__attribute__((target_clones("default", "avx2", "avx512f"))) void sum_values(const WaveCell& cell, int channels,
+__attribute__((target_clones("default", "avx2", "avx512f"))) void sum_values(const PaddedCell& cell, int channels,
                                                                              std::uint32_t turn_x, std::uint32_t turn_y,
                                                                              CellSums& sums) {
   sum_cell<false>(cell, channels, turn_x, turn_y, sums);
 }
 
-__attribute__((target_clones("default", "avx2", "avx512f"))) void sum_slopes(const WaveCell& cell, int channels,
+__attribute__((target_clones("default", "avx2", "avx512f"))) void sum_slopes(const PaddedCell& cell, int channels,
                                                                              std::uint32_t turn_x, std::uint32_t turn_y,
                                                                              CellSums& sums) {
   sum_cell<true>(cell, channels, turn_x, turn_y, sums);
@@ -101,32 +112,56 @@ WindowValue window_at(const std::array<float, lrp_window_terms>& polynomial, flo
   return {t * root * p, along * x, along * y};
 }
 
-/// The cells that were drawn last.
+/// The cells that were drawn last: so many that those of a row of points are kept for the next.
 class CellStore {
  public:
-  CellStore(const WaveField& field, const WaveLattice& lattice) : field_(field), lattice_(lattice), slots_(64) {}
+  CellStore(const WaveField& field, const WaveLattice& lattice)
+      : lattice_(lattice),
+        channels_(field.channels),
+        padded_((lattice.layer().waves() + lanes - 1) / lanes * lanes),
+        waves_(static_cast<std::size_t>(lattice.layer().waves())),
+        places_(slots),
+        integers_(static_cast<std::size_t>(3 * padded_) * slots),
+        colors_(static_cast<std::size_t>(2 * channels_ * padded_) * slots) {}
 
-  const WaveCell& at(std::int64_t cx, std::int64_t cy) {
-    auto& slot = slots_[static_cast<std::size_t>((cy & 7) * 8 + (cx & 7))];
-    if (!slot) slot.emplace(Slot{cx, cy, WaveCell(field_, lattice_.layer())});
-    if (slot->x != cx || slot->y != cy || !slot->drawn) {
-      slot->x = cx;
-      slot->y = cy;
-      slot->drawn = true;
-      lattice_.draw(cx, cy, slot->cell);
+  PaddedCell at(std::int64_t cx, std::int64_t cy) {
+    const auto slot = static_cast<std::size_t>((cx + 683 * cy) & (slots - 1));
+    std::int32_t* kx = integers_.data() + slot * static_cast<std::size_t>(3 * padded_);
+    auto* phase = reinterpret_cast<std::uint32_t*>(kx + 2 * padded_);
+    float* color = colors_.data() + slot * static_cast<std::size_t>(2 * channels_ * padded_);
+    Place& place = places_[slot];
+    if (!place.drawn || place.x != cx || place.y != cy) {
+      place = {cx, cy, true};
+      lattice_.draw(cx, cy, waves_);
+      std::fill_n(kx, 3 * padded_, 0);
+      std::fill_n(color, 2 * channels_ * padded_, 0.0F);
+      for (std::size_t j = 0; j < waves_.size(); ++j) {
+        kx[j] = waves_[j].bin.kx;
+        kx[padded_ + static_cast<std::ptrdiff_t>(j)] = waves_[j].bin.ky;
+        phase[j] = waves_[j].phase;
+        float* to = color + j;
+        for (int c = 0; c < channels_; ++c, to += 2 * padded_) {
+          to[0] = waves_[j].color[c].real();
+          to[padded_] = waves_[j].color[c].imag();
+        }
+      }
     }
-    return slot->cell;
+    return {padded_, kx, kx + padded_, phase, color};
   }
 
  private:
-  struct Slot {
-    std::int64_t x, y;
-    WaveCell cell;
+  static constexpr std::int64_t slots = 2048;
+  struct Place {
+    std::int64_t x = 0, y = 0;
     bool drawn = false;
   };
-  const WaveField& field_;
   const WaveLattice& lattice_;
-  std::vector<std::optional<Slot>> slots_;
+  int channels_;
+  int padded_;
+  std::vector<Wave> waves_;
+  std::vector<Place> places_;
+  AlignedBuffer<std::int32_t> integers_;
+  AlignedBuffer<float> colors_;
 };
 
 /// Adds a layer at some points.

@@ -21,7 +21,8 @@ struct WaveCounts {
 };
 
 /// out[c * points.size() + i] = n_c(points[i]), without the mean. With slopes, ∂n_c/∂x follows for all channels, then
-/// ∂n_c/∂y, a pixel. Neighboring points are evaluated fastest: the waves of 64 cells are kept. A wave counts as one
+/// ∂n_c/∂y, a pixel. Neighboring points are evaluated fastest: the waves of
+/// 2048 cells are kept. A wave counts as one
 /// cosine, whatever its channels.
 void sum_waves(const WaveField& field, Seed seed, std::span<const WavePoint> points, bool slopes, std::span<float> out,
                WaveCounts* counts = nullptr);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "methods/base/aligned_buffer.h"
 #include "methods/base/parallel.h"
 #include "methods/sparse/wave_tile.h"
 
@@ -11,7 +12,7 @@ namespace textonbench {
 namespace {
 
 /// Side of a tile. Tiles are cut from the grid of all multiples of the step.
-constexpr int tile_side = 64;
+constexpr int tile_side = most_wave_columns;
 
 /// Coordinates of the pixels along an axis, in 2^−22 pixel; any index.
 struct RasterAxis {
@@ -31,18 +32,43 @@ struct RasterAxis {
   }
 };
 
-/// Pixels [first, end) of a tile.
-struct TileRange {
+/// The pixels [first, first + count) of a tile along an axis that a lattice point's window reaches, with their
+/// distances from it.
+struct TileReach {
+  std::int64_t cell = 0;
   int first = 0;
-  int end = 0;
-  int size() const { return end - first; }
+  int count = 0;
+  int middle = 0;  ///< of the pixels: the first that is not before the point
+  /// From each pixel to the center: turns a bin, and the square in 2.25 squared spacings (1 beyond the last pixel).
+  std::uint32_t turns[most_wave_columns + wave_surplus] = {};
+  float squares[most_wave_columns + wave_surplus] = {};
 };
 
-/// The pixels of a tile whose distance from a center is less than `reach`.
-TileRange within(const std::vector<std::int64_t>& at, std::int64_t center, std::int64_t reach) {
-  const auto first = std::ranges::upper_bound(at, center - reach);
-  const auto end = std::ranges::lower_bound(at, center + reach);
-  return {static_cast<int>(first - at.begin()), static_cast<int>(end - at.begin())};
+/// Reaches of the lattice points `first` to `last` along an axis.
+template <class Center>
+std::vector<TileReach> reaches(const WaveField& field, const WaveLayer& layer, const std::vector<std::int64_t>& at,
+                               std::int64_t first, std::int64_t last, const Center& center_of) {
+  const std::int64_t reach = layer.spacing + layer.spacing / 2 + 1;
+  std::vector<TileReach> all;
+  for (std::int64_t cell = first; cell <= last; ++cell) {
+    const std::int64_t center = center_of(cell);
+    const auto begin = std::ranges::upper_bound(at, center - reach);
+    const auto end = std::ranges::lower_bound(at, center + reach);
+    if (begin >= end) continue;
+    TileReach& one = all.emplace_back();
+    one.cell = cell;
+    one.first = static_cast<int>(begin - at.begin());
+    one.count = static_cast<int>(end - begin);
+    std::ranges::fill(one.squares, 1.0F);
+    for (int i = 0; i < one.count; ++i) {
+      const std::int64_t distance = begin[i] - center;
+      const float d = static_cast<float>(distance) / static_cast<float>(layer.spacing);
+      one.turns[i] = field.turns(distance);
+      one.squares[i] = d * d * (1 / 2.25F);
+      if (distance < 0) one.middle = i + 1;
+    }
+  }
+  return all;
 }
 
 /// One tile, layer after layer.
@@ -53,24 +79,38 @@ class TileSum {
         x_(std::move(x)),
         y_(std::move(y)),
         polynomial_(lrp_window_polynomial(field.window)),
-        sum_(static_cast<std::size_t>(field.channels + 1) * tile_area) {}
+        sum_(static_cast<std::size_t>((field.channels + 1) * tile_area + wave_surplus)) {}
 
   /// Sums a layer over the tile's cells.
   void sum_layer(const WaveLattice& lattice) {
     sum_.set_zero();
-    const WaveLayer& layer = lattice.layer();
-    const std::int64_t reach = layer.spacing + layer.spacing / 2 + 1;
-    WaveCell cell(field_, layer);
-    reserve(cell);
+    const auto waves = static_cast<std::size_t>(lattice.layer().waves());
+    reserve(waves);
     // A pixel's nine lattice points are next to its nearest one.
-    for (std::int64_t cy = lattice.nearest_y(y_.front()) - 1; cy <= lattice.nearest_y(y_.back()) + 1; ++cy) {
-      const TileRange rows = within(y_, lattice.center_y(cy), reach);
-      if (rows.size() <= 0) continue;
-      for (std::int64_t cx = lattice.nearest_x(x_.front()) - 1; cx <= lattice.nearest_x(x_.back()) + 1; ++cx) {
-        const TileRange columns = within(x_, lattice.center_x(cx), reach);
-        if (columns.size() <= 0) continue;
-        lattice.draw(cx, cy, cell);
-        add_cell(cell, layer, {lattice.center_x(cx), lattice.center_y(cy)}, columns, rows);
+    const auto columns = reaches(field_, lattice.layer(), x_, lattice.nearest_x(x_.front()) - 1,
+                                 lattice.nearest_x(x_.back()) + 1, [&](std::int64_t c) { return lattice.center_x(c); });
+    const auto rows = reaches(field_, lattice.layer(), y_, lattice.nearest_y(y_.front()) - 1,
+                              lattice.nearest_y(y_.back()) + 1, [&](std::int64_t c) { return lattice.center_y(c); });
+    drawn_.resize(columns.size() * waves);
+    for (const TileReach& row : rows) {
+      draw_cells(lattice, columns, row.cell);
+      // Rows are paired around the middle of those that the cell reaches.
+      const std::int64_t low = y_[static_cast<std::size_t>(row.first)];
+      const std::int64_t high = y_[static_cast<std::size_t>(row.first + row.count - 1)];
+      const std::uint32_t middle = field_.turns(low + (high - low) / 2 - lattice.center_y(row.cell));
+      apart_.clear();
+      for (int p = 0; p < (row.count + 1) / 2; ++p) {
+        apart_.push_back(field_.turns((y_[static_cast<std::size_t>(row.first + row.count - 1 - p)] -
+                                       y_[static_cast<std::size_t>(row.first + p)]) /
+                                      2));
+      }
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        const auto cell = std::span(drawn_).subspan(i * waves, waves);
+        for (std::size_t j = 0; j < waves; ++j) {
+          ky_[j] = cell[j].bin.ky;
+          cell[j].phase += static_cast<std::uint32_t>(ky_[j]) * middle;
+        }
+        add_cell(cell, columns[i], row);
       }
     }
   }
@@ -81,84 +121,87 @@ class TileSum {
 
  private:
   static constexpr std::ptrdiff_t tile_area = std::ptrdiff_t{tile_side} * tile_side;
-  struct Center {
-    std::int64_t x, y;
-  };
 
-  void reserve(const WaveCell& cell) {
+  /// Pairs of rows that are summed at a time, so that the sums stay in the first cache.
+  static constexpr std::size_t pairs_at_once = 4;
+
+  /// Room for a layer's cells.
+  void reserve(std::size_t waves) {
     const auto columns = static_cast<std::size_t>(tile_side * field_.channels + wave_line);
-    const auto waves = static_cast<std::size_t>(cell.padded);
-    constexpr std::size_t pairs = tile_side / 2 + 1;
-    real_ = AlignedBuffer<float>(columns * waves);
-    imaginary_ = AlignedBuffer<float>(columns * waves);
-    rows_ = AlignedBuffer<float>(pairs * 2 * waves);
-    above_ = AlignedBuffer<float>(columns * pairs);
-    below_ = AlignedBuffer<float>(columns * pairs);
-    phase_.resize(waves);
+    const std::size_t padded = (waves + 7) / 8 * 8;
+    for (auto [buffer, size] : {std::pair{&real_, columns * waves + wave_surplus},
+                                {&imaginary_, columns * waves + wave_surplus},
+                                {&rows_, pairs_at_once * 2 * padded},
+                                {&above_, columns * pairs_at_once + wave_surplus},
+                                {&below_, columns * pairs_at_once + wave_surplus}}) {
+      *buffer = AlignedBuffer<float>(size);
+      buffer->set_zero();
+    }
+    ky_.assign(padded, 0);
   }
 
-  void add_cell(const WaveCell& cell, const WaveLayer& layer, const Center& center, TileRange columns, TileRange rows) {
-    // Rows are paired around the middle of those that the cell reaches.
-    const std::int64_t low = y_[static_cast<std::size_t>(rows.first)];
-    const std::int64_t high = y_[static_cast<std::size_t>(rows.end - 1)];
-    const std::int64_t middle = low + (high - low) / 2;
-    const int pairs = (rows.size() + 1) / 2;
-    const std::uint32_t turn = field_.turns(middle - center.y);
-    for (int j = 0; j < cell.waves; ++j) {
-      phase_[static_cast<std::size_t>(j)] = cell.phase.data()[j] + static_cast<std::uint32_t>(cell.ky.data()[j]) * turn;
-    }
-    const int width = columns.size();
-    for (int x = 0; x < width; ++x) {
-      const std::int64_t d = x_[static_cast<std::size_t>(columns.first + x)] - center.x;
-      turns_[x] = field_.turns(d);
-      distance_x_[x] = squared_reaches(d, layer);
-    }
-    const int padded = (width * field_.channels + wave_line - 1) / wave_line * wave_line;
-    fill_wave_columns(cell, field_.channels, phase_.data(), turns_, width, padded, real_.data(), imaginary_.data());
-    for (int p = 0; p < pairs; ++p) {
-      const std::int64_t d =
-          y_[static_cast<std::size_t>(rows.end - 1 - p)] - y_[static_cast<std::size_t>(rows.first + p)];
-      fill_wave_row(cell, field_.turns(d / 2), rows_.data() + p * 2 * cell.padded);
-    }
-    sum_wave_rows({real_.data(), imaginary_.data(), padded, cell.waves}, rows_.data(), 2 * cell.padded, cell.padded,
-                  pairs, above_.data(), below_.data());
-    for (int p = 0; p < pairs; ++p) {
-      const int above = rows.end - 1 - p, below = rows.first + p;
-      add_row(layer, center, columns, above, above_.data() + p * padded);
-      if (below != above) add_row(layer, center, columns, below, below_.data() + p * padded);
+  /// Waves of a row's cells, run by run of neighbors: at large steps pixels reach few of them.
+  void draw_cells(const WaveLattice& lattice, const std::vector<TileReach>& columns, std::int64_t cy) {
+    const auto waves = static_cast<std::size_t>(lattice.layer().waves());
+    std::size_t end = 0;
+    for (std::size_t first = 0; first < columns.size(); first = end) {
+      for (end = first + 1; end < columns.size() && columns[end].cell == columns[end - 1].cell + 1;) ++end;
+      lattice.draw(columns[first].cell, cy, std::span(drawn_).subspan(first * waves, (end - first) * waves));
     }
   }
 
-  static float squared_reaches(std::int64_t distance, const WaveLayer& layer) {
-    const float d = static_cast<float>(distance) / static_cast<float>(layer.spacing);
-    return d * d * (1 / 2.25F);
+  void add_cell(std::span<const Wave> waves, const TileReach& column, const TileReach& row) {
+    const auto padded = static_cast<int>(ky_.size());
+    // Channels follow each other without a gap, but where they are whole registers.
+    const int stride = std::max(8, column.count);
+    const int columns = (stride * field_.channels + wave_line - 1) / wave_line * wave_line;
+    fill_wave_columns(waves, field_.channels, column.turns, column.count, stride, columns, real_.data(),
+                      imaginary_.data());
+    for (std::size_t p = 0; p < apart_.size(); p += pairs_at_once) {
+      const auto pairs = std::span(apart_).subspan(p, std::min(pairs_at_once, apart_.size() - p));
+      fill_wave_rows(ky_, pairs, rows_.data());
+      sum_wave_rows({real_.data(), imaginary_.data(), columns, static_cast<int>(waves.size())}, rows_.data(),
+                    2 * padded, padded, static_cast<int>(pairs.size()), above_.data(), below_.data());
+      windowed_.clear();
+      for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const int below = static_cast<int>(p + i), above = row.count - 1 - below;
+        add_row(column, row, above, above_.data() + static_cast<std::ptrdiff_t>(i) * columns);
+        if (below != above) add_row(column, row, below, below_.data() + static_cast<std::ptrdiff_t>(i) * columns);
+      }
+      add_windowed_rows(polynomial_, windowed_);
+    }
   }
 
-  void add_row(const WaveLayer& layer, const Center& center, TileRange columns, int y, const float* from) {
-    const float distance_y = squared_reaches(y_[static_cast<std::size_t>(y)] - center.y, layer);
-    // The part that is within the window's disc.
-    int first = 0, end = columns.size();
-    while (first < end && distance_x_[first] + distance_y >= 1) ++first;
-    while (first < end && distance_x_[end - 1] + distance_y >= 1) --end;
-    float* sum = sum_.data() + y * tile_side + columns.first + first;
-    add_windowed_row(polynomial_, {.distance_x = distance_x_ + first,
-                                   .distance_y = distance_y,
-                                   .count = end - first,
-                                   .channels = field_.channels,
-                                   .from = from + first,
-                                   .from_stride = columns.size(),
-                                   .sum = sum,
-                                   .sum_stride = tile_area,
-                                   .squares = sum + field_.channels * tile_area});
+  void add_row(const TileReach& column, const TileReach& row, int y, const float* from) {
+    // The columns that are within the window's disc: their squares fall to the middle and rise from there.
+    const float most = 1 - row.squares[y];
+    const float* middle = column.squares + column.middle;
+    const auto first = static_cast<int>(
+        std::partition_point(column.squares, middle, [most](float d) { return d >= most; }) - column.squares);
+    const auto end = static_cast<int>(
+        std::partition_point(middle, column.squares + column.count, [most](float d) { return d < most; }) -
+        column.squares);
+    if (first >= end) return;
+    float* sum = sum_.data() + (row.first + y) * tile_side + column.first + first;
+    windowed_.push_back({.distance_x = column.squares + first,
+                         .distance_y = row.squares[y],
+                         .count = end - first,
+                         .channels = field_.channels,
+                         .from = from + first,
+                         .from_stride = std::max(8, column.count),
+                         .sum = sum,
+                         .sum_stride = tile_area,
+                         .squares = sum + field_.channels * tile_area});
   }
 
   const WaveField& field_;
   std::vector<std::int64_t> x_, y_;
   const std::array<float, lrp_window_terms>& polynomial_;
   AlignedBuffer<float> sum_, real_, imaginary_, rows_, above_, below_;
-  std::vector<std::uint32_t> phase_;
-  alignas(64) std::uint32_t turns_[tile_side] = {};
-  alignas(64) float distance_x_[tile_side] = {};
+  std::vector<Wave> drawn_;
+  std::vector<std::int32_t> ky_;
+  std::vector<std::uint32_t> apart_;
+  std::vector<WindowedRow> windowed_;
 };
 
 std::vector<std::int64_t> coordinates(const RasterAxis& axis, std::int64_t first) {

@@ -51,6 +51,7 @@ std::vector<Image> bin_covariance(const WaveField& field, const WaveLayer& layer
     const std::uint32_t first = layer.first[static_cast<std::size_t>(j)],
                         end = layer.first[static_cast<std::size_t>(j) + 1];
     for (std::size_t bin = first; bin < end; ++bin) {
+      const auto [kx, ky] = layer.bins[bin];
       double before = 0;
       for (std::size_t v = 0; v < colors; ++v) {
         const std::size_t entry = bin * colors + v;
@@ -61,12 +62,12 @@ std::vector<Image> bin_covariance(const WaveField& field, const WaveLayer& layer
         for (int c = 0; c < field.channels; ++c) {
           for (int d = 0; d <= c; ++d) {
             const std::complex<double> h = weight * std::complex<double>(a[c]) * std::conj(std::complex<double>(a[d]));
-            const auto add = [&](int kx, int ky, std::complex<double> value) {
-              if (2 * wrap(kx) > side) return;
-              sums[pair_index(c, d)].at(0, wrap(kx), wrap(ky)) += std::complex<float>(value);
+            const auto add = [&](int x, int y, std::complex<double> value) {
+              if (2 * wrap(x) > side) return;
+              sums[pair_index(c, d)].at(0, wrap(x), wrap(y)) += std::complex<float>(value);
             };
-            add(layer.kx[bin], layer.ky[bin], h);
-            add(-layer.kx[bin], -layer.ky[bin], std::conj(h));
+            add(kx, ky, h);
+            add(-kx, -ky, std::conj(h));
           }
         }
       }

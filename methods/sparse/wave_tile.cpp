@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "methods/base/portable_math.h"
+#include "methods/sparse/wave_lanes.h"
 
 // One version an instruction set, chosen when the program is loaded; without fused instructions all have the same bits.
 #define TEXTONBENCH_WAVE_SIMD __attribute__((target_clones("default", "avx2", "avx512f")))
@@ -110,41 +110,101 @@ __attribute__((target("avx2,fma"))) void sum_wave_rows_avx2(const WaveColumns& z
   sum_wave_rows_of<NarrowWaves, 2, 3>(z, rows, row_stride, sines, pairs, above, below);
 }
 
-}  // namespace
-
-TEXTONBENCH_WAVE_SIMD void fill_wave_columns(const WaveCell& cell, int channels, const std::uint32_t* phase,
-                                             const std::uint32_t* turns, int count, int columns, float* real,
-                                             float* imaginary) {
-  for (int j = 0; j < cell.waves; ++j, real += columns, imaginary += columns) {
-    const auto k = static_cast<std::uint32_t>(cell.kx.data()[j]);
-    const std::uint32_t start = phase[j];
-    constexpr int line = 64;
-    for (int first = 0; first < count; first += line) {
-      alignas(64) float cosine[line], sine[line];
-      const int here = std::min(line, count - first);
-      for (int x = 0; x < here; ++x) portable::cos_sin(k * turns[first + x] + start, cosine[x], sine[x]);
+template <class Lanes>
+[[gnu::always_inline]] inline void fill_columns_of(std::span<const Wave> waves, int channels,
+                                                   const std::uint32_t* turns, int count, int stride, int columns,
+                                                   float* real, float* imaginary) {
+  using Floats = typename Lanes::Floats;
+  using Loose = typename Lanes::LooseFloats;
+  for (const Wave& wave : waves) {
+    const auto k = static_cast<std::uint32_t>(wave.bin.kx);
+    const std::uint32_t phase = wave.phase;
+    // From the right: the surplus of a channel's last block falls on the next channel's first one, which comes later.
+    const std::complex<float>* color = wave.color;
+    for (int first = (count - 1) / Lanes::count * Lanes::count; first >= 0; first -= Lanes::count) {
+      Floats cosine, sine;
+      cos_sin_lanes<Lanes>(*reinterpret_cast<const typename Lanes::LooseWords*>(turns + first) * k + phase, cosine,
+                           sine);
       for (int c = 0; c < channels; ++c) {
-        const float re = cell.color.data()[2 * c * cell.padded + j];
-        const float im = cell.color.data()[(2 * c + 1) * cell.padded + j];
-        float* to_real = real + c * count + first;
-        float* to_imaginary = imaginary + c * count + first;
-        for (int x = 0; x < here; ++x) {
-          to_real[x] = re * cosine[x] - im * sine[x];
-          to_imaginary[x] = re * sine[x] + im * cosine[x];
-        }
+        const float re = color[c].real(), im = color[c].imag();
+        const Floats a = re * cosine - im * sine;
+        const Floats b = re * sine + im * cosine;
+        *reinterpret_cast<Loose*>(real + c * stride + first) = a;
+        *reinterpret_cast<Loose*>(imaginary + c * stride + first) = b;
       }
     }
-    std::fill(real + channels * count, real + columns, 0.0F);
-    std::fill(imaginary + channels * count, imaginary + columns, 0.0F);
+    real += columns;
+    imaginary += columns;
   }
 }
 
-TEXTONBENCH_WAVE_SIMD void fill_wave_row(const WaveCell& cell, std::uint32_t turn, float* cosines_and_sines) {
-  const std::int32_t* k = cell.ky.data();
-  float* cosine = cosines_and_sines;
-  float* sine = cosines_and_sines + cell.padded;
-  for (int j = 0; j < cell.padded; ++j) {
-    portable::cos_sin(static_cast<std::uint32_t>(k[j]) * turn, cosine[j], sine[j]);
+template <class Lanes>
+[[gnu::always_inline]] inline void add_windowed_row_of(const std::array<float, lrp_window_terms>& polynomial,
+                                                       const WindowedRow& row) {
+  using Floats = typename Lanes::Floats;
+  using Loose = typename Lanes::LooseFloats;
+  static_assert(lrp_window_terms == 9);
+  const auto& k = polynomial;
+  const WindowedRow r = row;
+  for (int first = 0; first < r.count; first += Lanes::count) {
+    Floats t = 1 - *reinterpret_cast<const Loose*>(r.distance_x + first) - r.distance_y;
+    t = t > 0 ? t : Floats{};
+    const Floats t2 = t * t, t4 = t2 * t2;
+    const Floats p =
+        ((k[0] + k[1] * t) + t2 * (k[2] + k[3] * t)) + t4 * (((k[4] + k[5] * t) + t2 * (k[6] + k[7] * t)) + t4 * k[8]);
+    Floats root;
+    for (int x = 0; x < Lanes::count; ++x) root[x] = std::sqrt(t[x]);
+    const Floats window = t * root * p;
+    *reinterpret_cast<Loose*>(r.squares + first) += window * window;
+    const float* from = r.from + first;
+    float* sum = r.sum + first;
+    for (int c = 0; c < r.channels; ++c, from += r.from_stride, sum += r.sum_stride) {
+      *reinterpret_cast<Loose*>(sum) += window * *reinterpret_cast<const Loose*>(from);
+    }
+  }
+}
+
+TEXTONBENCH_WAVE_SIMD void add_narrow_rows(const std::array<float, lrp_window_terms>& polynomial,
+                                           std::span<const WindowedRow> rows) {
+  for (const WindowedRow& row : rows) add_windowed_row_of<EightLanes>(polynomial, row);
+}
+
+TEXTONBENCH_WAVE_SIMD void add_wide_rows(const std::array<float, lrp_window_terms>& polynomial,
+                                         std::span<const WindowedRow> rows) {
+  for (const WindowedRow& row : rows) add_windowed_row_of<SixteenLanes>(polynomial, row);
+}
+
+TEXTONBENCH_WAVE_SIMD void fill_narrow_columns(std::span<const Wave> waves, int channels, const std::uint32_t* turns,
+                                               int count, int stride, int columns, float* real, float* imaginary) {
+  fill_columns_of<EightLanes>(waves, channels, turns, count, stride, columns, real, imaginary);
+}
+
+TEXTONBENCH_WAVE_SIMD void fill_wide_columns(std::span<const Wave> waves, int channels, const std::uint32_t* turns,
+                                             int count, int stride, int columns, float* real, float* imaginary) {
+  fill_columns_of<SixteenLanes>(waves, channels, turns, count, stride, columns, real, imaginary);
+}
+
+}  // namespace
+
+void fill_wave_columns(std::span<const Wave> waves, int channels, const std::uint32_t* turns, int count, int stride,
+                       int columns, float* real, float* imaginary) {
+  (count <= EightLanes::count ? fill_narrow_columns : fill_wide_columns)(waves, channels, turns, count, stride, columns,
+                                                                         real, imaginary);
+}
+
+TEXTONBENCH_WAVE_SIMD void fill_wave_rows(std::span<const std::int32_t> ky, std::span<const std::uint32_t> turns,
+                                          float* cosines_and_sines) {
+  const auto padded = static_cast<std::ptrdiff_t>(ky.size());
+  float* to = cosines_and_sines;
+  for (const std::uint32_t turn : turns) {
+    for (std::ptrdiff_t j = 0; j < padded; j += EightLanes::count) {
+      const auto k = *reinterpret_cast<const EightLanes::LooseWords*>(ky.data() + j);
+      EightLanes::Floats cosine, sine;
+      cos_sin_lanes<EightLanes>(k * turn, cosine, sine);
+      *reinterpret_cast<EightLanes::LooseFloats*>(to + j) = cosine;
+      *reinterpret_cast<EightLanes::LooseFloats*>(to + padded + j) = sine;
+    }
+    to += 2 * padded;
   }
 }
 
@@ -159,25 +219,9 @@ void sum_wave_rows(const WaveColumns& z, const float* rows, int row_stride, int 
   }
 }
 
-TEXTONBENCH_WAVE_SIMD void add_windowed_row(const std::array<float, lrp_window_terms>& polynomial,
-                                            const WindowedRow& row) {
-  constexpr int most = 64;
-  alignas(64) float window[most];
-  for (int first = 0; first < row.count; first += most) {
-    const int here = std::min(most, row.count - first);
-    for (int x = 0; x < here; ++x) {
-      const float t = std::max(0.0F, 1 - row.distance_x[first + x] - row.distance_y);
-      float p = polynomial[lrp_window_terms - 1];
-      for (int m = lrp_window_terms - 2; m >= 0; --m) p = p * t + polynomial[static_cast<std::size_t>(m)];
-      window[x] = t * std::sqrt(t) * p;
-    }
-    for (int x = 0; x < here; ++x) row.squares[first + x] += window[x] * window[x];
-    for (int c = 0; c < row.channels; ++c) {
-      const float* from = row.from + c * row.from_stride + first;
-      float* sum = row.sum + c * row.sum_stride + first;
-      for (int x = 0; x < here; ++x) sum[x] += window[x] * from[x];
-    }
-  }
+void add_windowed_rows(const std::array<float, lrp_window_terms>& polynomial, std::span<const WindowedRow> rows) {
+  if (rows.empty()) return;
+  (rows.front().count <= EightLanes::count ? add_narrow_rows : add_wide_rows)(polynomial, rows);
 }
 
 }  // namespace textonbench

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "methods/sparse/lrp_window.h"
 #include "methods/sparse/wave_field.h"
@@ -22,13 +23,18 @@ struct WaveColumns {
   int waves;
 };
 
-/// Writes z = color exp(2πi (k_x turns[x] + phase[j])) of each wave of a cell at columns c * count + x, and zero
-/// beyond.
-void fill_wave_columns(const WaveCell& cell, int channels, const std::uint32_t* phase, const std::uint32_t* turns,
-                       int count, int columns, float* real, float* imaginary);
+/// Vectors are whole: as many places beyond the last column must exist, whose values are finite and without meaning.
+constexpr int wave_surplus = 16;
+/// Greatest number of columns.
+constexpr int most_wave_columns = 64;
 
-/// Cosines of 2π k_y turn, then sines, of a cell's waves, padded as they are.
-void fill_wave_row(const WaveCell& cell, std::uint32_t turn, float* cosines_and_sines);
+/// Writes z = color exp(2πi (k_x turns[x] + phase)) of each wave at columns c * stride + x, x < count
+/// <= stride.
+void fill_wave_columns(std::span<const Wave> waves, int channels, const std::uint32_t* turns, int count, int stride,
+                       int columns, float* real, float* imaginary);
+
+/// For each turn the cosines of 2π k_y turn of all waves, then the sines. Waves are padded to a multiple of 8.
+void fill_wave_rows(std::span<const std::int32_t> ky, std::span<const std::uint32_t> turns, float* cosines_and_sines);
 
 /// above[i] = Σ_j Re z_j cos_j − Im z_j sin_j and below[i] = Σ_j Re z_j cos_j + Im z_j sin_j for `pairs` pairs of rows:
 /// pair p takes its cosines from rows[p * row_stride] on, its sines from `sines` later, and has above + p * columns and
@@ -37,8 +43,9 @@ void fill_wave_row(const WaveCell& cell, std::uint32_t turn, float* cosines_and_
 void sum_wave_rows(const WaveColumns& z, const float* rows, int row_stride, int sines, int pairs, float* above,
                    float* below);
 
-/// Part of a row of a tile: sum[c * sum_stride + x] += w(x) from[c * from_stride + x] and squares[x] += w(x)², where
-/// w(x) is the window at squared distance distance_x[x] + distance_y, in 2.25 squared spacings.
+/// Part of a row of a tile: sum[c * sum_stride + x] += w(x) from[c * from_stride + x] and squares[x] += w(x)², x <
+/// count, where w(x) is the window at squared distance distance_x[x] + distance_y, in 2.25 squared spacings: zero from
+/// 1 on, as it must be in the surplus.
 struct WindowedRow {
   const float* distance_x;
   float distance_y;
@@ -50,6 +57,7 @@ struct WindowedRow {
   std::ptrdiff_t sum_stride;
   float* squares;
 };
-void add_windowed_row(const std::array<float, lrp_window_terms>& polynomial, const WindowedRow& row);
+/// All rows are of one cell.
+void add_windowed_rows(const std::array<float, lrp_window_terms>& polynomial, std::span<const WindowedRow> rows);
 
 }  // namespace textonbench

@@ -42,6 +42,18 @@ constexpr std::uint64_t largest = std::numeric_limits<std::uint64_t>::max();
 constexpr std::uint64_t awkward[] = {0, 1, 0xFFFFFFFFU, 0x100000000U, 0x123456789ABCDEFU, largest};
 
 // Known answers of Random123's kat_vectors.
+TEST(PhiloxBlocks, AreThoseOfTheirKeysAndIndices) {
+  std::vector<std::uint64_t> keys, indices;
+  for (std::uint64_t i = 0; i < 37; ++i) {
+    keys.push_back(0x123456789ABCDEFULL * (i + 1));
+    indices.push_back(0xFEDCBA9876543210ULL ^ (i << 29U));
+  }
+  std::vector<std::array<std::uint32_t, 4>> blocks(keys.size());
+  const std::uint64_t row = ~std::uint64_t{4};
+  philox_blocks(keys, row, indices, blocks);
+  for (std::size_t i = 0; i < blocks.size(); ++i) EXPECT_EQ(blocks[i], philox_block(keys[i], row, indices[i])) << i;
+}
+
 TEST(Philox, TheOracleOfThisTestIsRight) {
   constexpr std::uint32_t ones = 0xFFFFFFFFU;
   EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}), (Words{0x6627E8D5U, 0xE169C58DU, 0xBC57AC4CU, 0x9B00DBD8U}));

@@ -228,8 +228,7 @@ TEST(Lrp, LimitsAreGaborKernelsAndFourierSeries) {
   WaveLayer layer;
   layer.spacing = std::int64_t{1000000} << plane_bits;
   layer.first = {0, 1, 2};
-  layer.kx = {3, -5};
-  layer.ky = {4, 1};
+  layer.bins = {{3, 4}, {-5, 1}};
   layer.chance = {0xFFFFFFFFU, 0xFFFFFFFFU};
   layer.color = {1, 0.5};
   field.layers.push_back(layer);
@@ -250,13 +249,13 @@ TEST(Lrp, LimitsAreGaborKernelsAndFourierSeries) {
     double expected = 0;
     for (int cell_y = -1; cell_y <= 1; ++cell_y) {
       for (int cell_x = -1; cell_x <= 1; ++cell_x) {
-        WaveCell cell(field, layer);
-        lattice.draw(cell_x, cell_y, cell);
-        for (int j = 0; j < 2; ++j) {
-          const double turns = cell.phase.data()[j] * 0x1p-32 + cell.kx.data()[j] * static_cast<double>(i / 2) / 64 -
-                               (cell.kx.data()[j] * cell_x + cell.ky.data()[j] * cell_y) * 1e6 / 64;
-          expected += lrp_window(LrpWindow::bessel, std::hypot(cell_x, cell_y)) * (j == 0 ? 1 : 0.5) *
-                      std::cos(2 * std::numbers::pi * turns);
+        Wave waves[2];
+        lattice.draw(cell_x, cell_y, waves);
+        for (const Wave& wave : waves) {
+          const double turns = wave.phase * 0x1p-32 + wave.bin.kx * static_cast<double>(i / 2) / 64 -
+                               (wave.bin.kx * cell_x + wave.bin.ky * cell_y) * 1e6 / 64;
+          expected += lrp_window(LrpWindow::bessel, std::hypot(cell_x, cell_y)) *
+                      static_cast<double>(wave.color->real()) * std::cos(2 * std::numbers::pi * turns);
         }
       }
     }

@@ -29,16 +29,14 @@ inline std::vector<std::array<double, 3>> plain_waves(const WaveField& field, Se
           const double x = static_cast<double>(point.x - lattice.center_x(cx)) / unit + shift_x;
           const double y = static_cast<double>(point.y - lattice.center_y(cy)) / unit + shift_y;
           const double w = lrp_window(field.window, std::hypot(x, y) / field.layers[l].pixels());
-          WaveCell cell(field, field.layers[l]);
-          lattice.draw(cx, cy, cell);
           squares += w * w;
-          for (int j = 0; j < cell.waves; ++j) {
-            const double angle =
-                turn * ((cell.kx.data()[j] * x + cell.ky.data()[j] * y) / side + cell.phase.data()[j] * 0x1p-32);
+          std::vector<Wave> waves(static_cast<std::size_t>(field.layers[l].waves()));
+          lattice.draw(cx, cy, waves);
+          for (const Wave& wave : waves) {
+            const double angle = turn * ((wave.bin.kx * x + wave.bin.ky * y) / side + wave.phase * 0x1p-32);
             for (std::size_t c = 0; c < channels; ++c) {
-              const float* color = cell.color.data() + 2 * c * static_cast<std::size_t>(cell.padded) + j;
-              sum[c] += w * (static_cast<double>(color[0]) * std::cos(angle) -
-                             static_cast<double>(color[cell.padded]) * std::sin(angle));
+              sum[c] += w * (static_cast<double>(wave.color[c].real()) * std::cos(angle) -
+                             static_cast<double>(wave.color[c].imag()) * std::sin(angle));
             }
           }
         }
