@@ -82,7 +82,7 @@ class Conditional {
   virtual Image kriging() const = 0;
   /// What the sample of that seed adds to it, zero where the picture is known: mean zero.
   virtual Image innovation(Seed seed) const = 0;
-  /// A sample of the law given nothing, mean included.
+  /// A sample of the law given nothing at the missing pixels, the picture elsewhere.
   virtual Image unconditional(Seed seed) const = 0;
 };
 

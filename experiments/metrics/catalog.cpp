@@ -9,6 +9,7 @@
 #include "experiments/metrics/cramer_von_mises.h"
 #include "experiments/metrics/frame_metrics.h"
 #include "experiments/metrics/kriging_catalog.h"
+#include "experiments/metrics/lrp_catalog.h"
 #include "experiments/metrics/metric.h"
 #include "experiments/metrics/model_error.h"
 #include "experiments/metrics/modulus_and_phase.h"
@@ -32,6 +33,14 @@ constexpr std::array general_metrics{
                 .reference = "EUSIPCO 2014, eq. 3, with factor 2 on the cross term: sqrt(W2² / target variance)",
                 .source = "model_error",
                 .of_model = rme},
+    MetricEntry{.name = "smoothed_rme",
+                .title = "Relative model error of smoothed spectra",
+                .unit = "1",
+                .level = MetricLevel::model,
+                .better = Better::lower,
+                .reference = "RME of the expected periodograms of blocks under a Hann taper",
+                .source = "model_error",
+                .of_model = smoothed_rme},
     MetricEntry{.name = "rme_printed",
                 .title = "Relative model error as printed",
                 .unit = "1",
@@ -349,7 +358,7 @@ std::span<const MetricEntry> metric_catalog() {
   static const std::vector<MetricEntry> catalog = [] {
     std::vector<MetricEntry> entries(general_metrics.begin(), general_metrics.end());
     for (const std::span<const MetricEntry> more :
-         {spot_identity_metrics(), spline_identity_metrics(), frame_metrics(), kriging_metrics()}) {
+         {spot_identity_metrics(), spline_identity_metrics(), frame_metrics(), kriging_metrics(), lrp_metrics()}) {
       entries.insert(entries.end(), more.begin(), more.end());
     }
     return entries;

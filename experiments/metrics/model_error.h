@@ -13,7 +13,12 @@ namespace textonbench {
 /// ratio; 1 for a model of no variation.
 std::optional<double> rme(const Model& model, const Target& target, const Domain& domain);
 
-/// The same without the factor 2, as EUSIPCO 2014 prints it: 1 for every P whose overlap with Q equals its own energy,
+/// RME of both spectra smoothed: each is the expected periodogram of blocks of T x T pixels under a Hann taper, T the
+/// largest power of two below the exemplar's sides. Unlike a single periodogram, which the target's spectrum is, a
+/// smooth spectrum can come near it.
+std::optional<double> smoothed_rme(const Model& model, const Target& target, const Domain& domain);
+
+/// The same as rme() without the factor 2, as EUSIPCO 2014 prints it: 1 for every P whose overlap with Q equals its own energy,
 /// so 1 for a perfect model.
 std::optional<double> rme_printed(const Model& model, const Target& target, const Domain& domain);
 

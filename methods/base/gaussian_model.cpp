@@ -8,6 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "methods/base/parallel.h"
 #include "methods/base/spectrum.h"
 
 namespace textonbench {
@@ -92,6 +93,38 @@ double relative_error(const CrossSpectrum& p, const CrossSpectrum& target, doubl
 }
 
 }  // namespace
+
+CrossSpectrum factor_products(std::span<const Spectrum> products, int channels) {
+  const auto pair = [](int c, int d) { return static_cast<std::size_t>(c * (c + 1) / 2 + d); };
+  if (products.size() != pair(channels, 0)) {
+    throw std::invalid_argument(fmt::format("{} products of spectra for {} channels: expected {}", products.size(),
+                                            channels, pair(channels, 0)));
+  }
+  const Extent grid = products.front().raster();
+  CrossSpectrum result;
+  for (int k = 0; k < channels; ++k) result.factors.emplace_back(grid, channels);
+  parallel_for(grid.height, [&](int ky) {
+    Eigen::MatrixXcd matrix(channels, channels);
+    for (int kx = 0; kx < products.front().columns(); ++kx) {
+      for (int c = 0; c < channels; ++c) {
+        for (int d = 0; d <= c; ++d) {
+          matrix(c, d) = std::complex<double>(products[pair(c, d)].at(0, kx, ky));
+          matrix(d, c) = std::conj(matrix(c, d));
+        }
+        matrix(c, c) = matrix(c, c).real();
+      }
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> solver(matrix);
+      for (int k = 0; k < channels; ++k) {
+        const double size = std::sqrt(std::max(0.0, solver.eigenvalues()[k]));
+        for (int c = 0; c < channels; ++c) {
+          result.factors[static_cast<std::size_t>(k)].at(c, kx, ky) =
+              std::complex<float>(size * solver.eigenvectors()(c, k));
+        }
+      }
+    }
+  });
+  return result;
+}
 
 GaussianModel gaussian_model(Image u) {
   GaussianModel model{channel_means(u), {}};

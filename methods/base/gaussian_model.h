@@ -10,6 +10,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "methods/base/fft.h"
@@ -24,6 +25,11 @@ struct CrossSpectrum {
   Extent grid() const { return factors.front().raster(); }
   int channels() const { return factors.front().channels(); }
 };
+
+/// The cross-spectrum of C channels whose entries P_cd, d <= c, are channel 0 of products[c (c + 1) / 2 + d];
+/// eigenvalues below zero (rounding) count as zero. Throws std::invalid_argument unless there are C (C + 1) / 2
+/// products.
+CrossSpectrum factor_products(std::span<const Spectrum> products, int channels);
 
 /// Gaussian model of an exemplar: mean, and cross-spectrum of rank one with P(0) = 0.
 struct GaussianModel {

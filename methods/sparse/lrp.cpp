@@ -123,6 +123,7 @@ LrpOptions lrp_options(const Params& params) {
   options.welch.taper = params.text("taper") == "hann" ? Taper::hann : Taper::none;
   options.strata.strata = static_cast<int>(params.integer("strata"));
   options.strata.cosines = static_cast<int>(params.integer("cosines"));
+  options.strata.spacing = params.number("spacing");
   options.strata.window = params.text("window") == "bessel" ? LrpWindow::bessel : LrpWindow::printed;
   options.amplitude = params.text("amplitude") == "corrected" ? LrpAmplitude::corrected : LrpAmplitude::printed;
   options.color = params.text("color") == "coherent" ? LrpColor::coherent : LrpColor::independent;
@@ -144,6 +145,12 @@ std::span<const ParamSpec> lrp_params() {
        .help = "parts of equal energy that the spectrum is cut into; at most as many as cosines",
        .min = 1,
        .max = 64},
+      {.name = "spacing",
+       .default_value = 1.0,
+       .unit = "",
+       .help = "factor of the spacing of the windows' lattices, and so of the windows",
+       .min = 0.05,
+       .max = 20},
       {.name = "color",
        .default_value = std::string("coherent"),
        .unit = "",

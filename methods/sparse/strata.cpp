@@ -242,6 +242,9 @@ std::vector<Stratum> stratify(const PowerPlane& power, const StrataOptions& opti
     throw std::invalid_argument(
         fmt::format("{} cosines in {} strata: expected at least one in each", options.cosines, options.strata));
   }
+  if (!(options.spacing > 0 && std::isfinite(options.spacing))) {
+    throw std::invalid_argument(fmt::format("spacing = {}: expected a factor above 0", options.spacing));
+  }
   std::vector<Pixel> bins = power.half();
   const auto power_of = [&](const Pixel& bin) { return power.at(bin.x, bin.y); };
   double largest = 0;
@@ -280,7 +283,7 @@ std::vector<Stratum> stratify(const PowerPlane& power, const StrataOptions& opti
   }
   for (std::size_t i = 0; i < strata.size(); ++i) {
     Stratum& stratum = strata[i];
-    stratum.spacing = power.side() * std::sqrt(stratum.cosines / (2.0 * stratum.area));
+    stratum.spacing = options.spacing * power.side() * std::sqrt(stratum.cosines / (2.0 * stratum.area));
     const double delta = lrp_window_moments(options.window).energy_radius / stratum.spacing * power.side();
     const auto parts = static_cast<std::size_t>(stratum.cosines);
     stratum.parts =

@@ -35,11 +35,11 @@ class PowerPlane {
 
 /// A set of bins of like power.
 struct Stratum {
-  std::vector<Pixel> bins;                ///< of the half
-  int area = 0;                           ///< bins of the whole plane, |S|
-  double energy = 0;                      ///< Σ P over them
-  int cosines = 0;                        ///< J_S
-  double spacing = 0;                     ///< of the lattice of windows, Δ_S = T sqrt(J_S / (2 |S|)) pixels
+  std::vector<Pixel> bins;  ///< of the half
+  int area = 0;             ///< bins of the whole plane, |S|
+  double energy = 0;        ///< Σ P over them
+  int cosines = 0;          ///< J_S
+  double spacing = 0;       ///< of the lattice of windows, Δ_S = T sqrt(J_S / (2 |S|)) pixels times the factor
   std::vector<std::vector<Pixel>> parts;  ///< J_S disjoint sets of bins, none empty: one is drawn of each
 };
 
@@ -47,6 +47,7 @@ struct StrataOptions {
   int strata = 4;
   int cosines = 50;
   LrpWindow window = LrpWindow::bessel;
+  double spacing = 1;  ///< factor of all Δ_S
 };
 
 /// The bins whose distance on the torus to a bin outside of the set is at least `distance`, and of each connected piece
@@ -60,8 +61,8 @@ std::vector<std::vector<Pixel>> cluster_bins(const std::vector<Pixel>& bins, int
 /// Strata of equal energy (within that of one bin), from the most to the least power, each with its parts. Bins whose
 /// power is below 1e-12 of the largest belong to none, and strata that would be empty are left out: there are fewer
 /// when single bins hold much of the energy. Cosines are shared evenly, but a stratum takes no more than it has bins in
-/// the half, and the rest goes to the others. Throws std::invalid_argument unless 1 <= strata <= cosines and some power
-/// is positive.
+/// the half, and the rest goes to the others. Throws std::invalid_argument unless 1 <= strata <= cosines, the factor
+/// and some power are positive.
 std::vector<Stratum> stratify(const PowerPlane& power, const StrataOptions& options, const Stream& stream);
 
 }  // namespace textonbench

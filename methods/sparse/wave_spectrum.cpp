@@ -1,6 +1,5 @@
 #include "methods/sparse/wave_spectrum.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "methods/base/parallel.h"
@@ -152,29 +151,7 @@ CrossSpectrum wave_spectrum(const WaveField& field, Extent grid) {
   std::vector<Spectrum> p;
   p.reserve(covariance.size());
   for (const Image& plane : covariance) p.push_back(forward_fft(plane));
-  CrossSpectrum result;
-  for (int k = 0; k < channels; ++k) result.factors.emplace_back(grid, channels);
-  parallel_for(grid.height, [&](int ky) {
-    Eigen::MatrixXcd matrix(channels, channels);
-    for (int kx = 0; kx < p.front().columns(); ++kx) {
-      for (int c = 0; c < channels; ++c) {
-        for (int d = 0; d <= c; ++d) {
-          matrix(c, d) = std::complex<double>(p[pair_index(c, d)].at(0, kx, ky));
-          matrix(d, c) = std::conj(matrix(c, d));
-        }
-        matrix(c, c) = matrix(c, c).real();
-      }
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> solver(matrix);
-      for (int k = 0; k < channels; ++k) {
-        const double size = std::sqrt(std::max(0.0, solver.eigenvalues()[k]));
-        for (int c = 0; c < channels; ++c) {
-          result.factors[static_cast<std::size_t>(k)].at(c, kx, ky) =
-              std::complex<float>(size * solver.eigenvectors()(c, k));
-        }
-      }
-    }
-  });
-  return result;
+  return factor_products(p, channels);
 }
 
 }  // namespace textonbench

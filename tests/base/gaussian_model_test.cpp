@@ -79,6 +79,37 @@ double dense_distance_squared(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b
   return a.trace() + b.trace() - 2 * root(half * b * half).trace();
 }
 
+TEST(FactorProducts, HaveTheProductsOfTheirFactors) {
+  const Spectrum a = forward_fft(test_texture({6, 5}, 3, 1)), b = forward_fft(test_texture({6, 5}, 3, 2));
+  std::vector<Spectrum> products;
+  for (int c = 0; c < 3; ++c) {
+    for (int d = 0; d <= c; ++d) {
+      Spectrum& product = products.emplace_back(Extent{6, 5}, 1);
+      for (int ky = 0; ky < 5; ++ky) {
+        for (int kx = 0; kx < 4; ++kx) {
+          product.at(0, kx, ky) =
+              a.at(c, kx, ky) * std::conj(a.at(d, kx, ky)) + b.at(c, kx, ky) * std::conj(b.at(d, kx, ky));
+        }
+      }
+    }
+  }
+  const CrossSpectrum p = factor_products(products, 3);
+  ASSERT_EQ(p.factors.size(), 3U);
+  for (int c = 0; c < 3; ++c) {
+    for (int d = 0; d <= c; ++d) {
+      for (int ky = 0; ky < 5; ++ky) {
+        for (int kx = 0; kx < 4; ++kx) {
+          std::complex<float> sum = 0;
+          for (const Spectrum& h : p.factors) sum += h.at(c, kx, ky) * std::conj(h.at(d, kx, ky));
+          const std::complex<float> expected = products[static_cast<std::size_t>(c * (c + 1) / 2 + d)].at(0, kx, ky);
+          EXPECT_NEAR(std::abs(sum - expected), 0, 1e-5F * (std::abs(expected) + 1));
+        }
+      }
+    }
+  }
+  EXPECT_THROW(factor_products(products, 2), std::invalid_argument);
+}
+
 TEST(TransportDistance, OfRankOneIsTheDenseGaussianDistance) {
   const CrossSpectrum p = random_spectrum({8, 8}, 3, 1, 1);
   const CrossSpectrum q = random_spectrum({8, 8}, 3, 1, 2);

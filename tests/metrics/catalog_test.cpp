@@ -14,8 +14,8 @@ TEST(MetricCatalog, NamesAndOrderAreThoseThatScriptsKnow) {
   EXPECT_THAT(
       names,
       testing::ElementsAre(
-          "rme", "rme_printed", "ot_distance", "rme_corrected", "rme_bound", "kept_variance", "kernel_kurtosis",
-          "predicted_kurtosis", "local_kurtosis_least", "local_kurtosis_greatest", "poisson_impacts",
+          "rme", "smoothed_rme", "rme_printed", "ot_distance", "rme_corrected", "rme_bound", "kept_variance",
+          "kernel_kurtosis", "predicted_kurtosis", "local_kurtosis_least", "local_kurtosis_greatest", "poisson_impacts",
           "stratified_impacts", "mean_error", "color_covariance_error", "autocovariance_error_8",
           "autocovariance_error_32", "autocovariance_error_quarter", "log_spectral_distance", "skewness",
           "excess_kurtosis", "cramer_von_mises", "patch_distance", "limit_patch_distance", "analyze_seconds",
@@ -41,7 +41,10 @@ TEST(MetricCatalog, NamesAndOrderAreThoseThatScriptsKnow) {
           "kriging_iteration_seconds", "kriging_bytes", "kriging_error", "kriging_condition_number",
           "kriging_border_distance", "kriging_variance_ratio", "conditional_mean_deviation",
           "conditional_covariance_deviation", "kriging_innovation_correlation", "hole_covariance_ratio",
-          "estimate_bias"));
+          "estimate_bias", "lrp_least_windows", "lrp_most_windows", "lrp_envelope_ripple", "lrp_variance_ripple",
+          "lrp_leakage_exponent", "lrp_window_error", "lrp_five_terms_error", "lrp_concentration_ratio",
+          "lrp_radial_energy", "lrp_stratum_variance_error", "lrp_strata_imbalance", "lrp_erosion_energy",
+          "lrp_coverage", "lrp_calls", "lrp_calls_ratio"));
 }
 
 TEST(MetricCatalog, EveryEntryIsDescribedAndCanBeMeasuredAtItsLevel) {
