@@ -237,10 +237,16 @@ std::optional<double> lrp_stratum_variance_error(const Model& model, const Targe
   double most = 0;
   for (std::size_t i = 0; i < lrp->layers.size(); ++i) {
     const WaveLayer& layer = lrp->field.layers[i];
-    double amplitude = 0;  // all colors of a layer have one
-    for (int c = 0; c < lrp->field.channels; ++c)
-      amplitude += static_cast<double>(std::norm(layer.color[static_cast<std::size_t>(c)]));
-    const double variance = 0.5 * layer.waves() * amplitude * correlation.at(0, 0);
+    double squares = 0;  // the colors of a wave are of one length
+    for (int j = 0; j < layer.waves(); ++j) {
+      const std::size_t entry =
+          std::size_t{layer.first[static_cast<std::size_t>(j)]} * static_cast<std::size_t>(layer.colors);
+      for (int c = 0; c < lrp->field.channels; ++c) {
+        const std::size_t at = entry * static_cast<std::size_t>(lrp->field.channels) + static_cast<std::size_t>(c);
+        squares += static_cast<double>(std::norm(layer.color[at]));
+      }
+    }
+    const double variance = 0.5 * squares * correlation.at(0, 0);
     const double wanted = lrp->layers[i].stratum.energy / std::pow(lrp->spectrum.side(), 2);
     most = std::max(most, std::abs(variance / wanted - 1));
   }

@@ -124,8 +124,11 @@ LrpOptions lrp_options(const Params& params) {
   options.strata.strata = static_cast<int>(params.integer("strata"));
   options.strata.cosines = static_cast<int>(params.integer("cosines"));
   options.strata.spacing = params.number("spacing");
+  options.strata.kept = params.number("kept");
   options.strata.window = params.text("window") == "bessel" ? LrpWindow::bessel : LrpWindow::printed;
-  options.amplitude = params.text("amplitude") == "corrected" ? LrpAmplitude::corrected : LrpAmplitude::printed;
+  options.amplitude = params.text("amplitude") == "corrected" ? LrpAmplitude::corrected
+                      : params.text("amplitude") == "printed" ? LrpAmplitude::printed
+                                                              : LrpAmplitude::parts;
   options.color = params.text("color") == "coherent" ? LrpColor::coherent : LrpColor::independent;
   options.even_variance = params.text("variance") == "even";
   return options;
@@ -151,6 +154,14 @@ std::span<const ParamSpec> lrp_params() {
        .help = "factor of the spacing of the windows' lattices, and so of the windows",
        .min = 0.05,
        .max = 20},
+      {.name = "kept",
+       .default_value = 0.99,
+       .unit = "",
+       .help = "part of the power that strata are cut from; 1, as in the paper, spreads the weakest stratum over all "
+               "that is "
+               "left of the spectrum",
+       .min = 0.01,
+       .max = 1},
       {.name = "color",
        .default_value = std::string("coherent"),
        .unit = "",
@@ -162,8 +173,8 @@ std::span<const ParamSpec> lrp_params() {
        .default_value = std::string("corrected"),
        .unit = "",
        .help = "corrected: every stratum has its own variance; printed: by the paper's equation 3, which attenuates "
-               "strata of wide windows",
-       .choices = {"corrected", "printed"}},
+               "strata of wide windows; parts: every cosine has the variance of its own part of a stratum",
+       .choices = {"corrected", "printed", "parts"}},
       {.name = "variance",
        .default_value = std::string("even"),
        .unit = "",

@@ -19,7 +19,9 @@
 namespace textonbench {
 
 /// corrected: every layer has its stratum's variance. printed: equation 3, scaled as a whole to the total variance.
-enum class LrpAmplitude { corrected, printed };
+/// parts: beyond the paper, every wave has the variance of the bins around its own part, which k-means makes of unequal
+/// sizes.
+enum class LrpAmplitude { corrected, printed, parts };
 
 /// coherent: the waves of a bin share their phase, their colors drawn so that the mean is the bin's cross-spectrum.
 /// independent: as in the paper, one noise for each axis of a decorrelated color space, which keeps the covariance of

@@ -33,15 +33,18 @@ std::uint32_t as_word(double probability) {
   return static_cast<std::uint32_t>(std::clamp(std::floor(probability * 0x1p32), 0.0, 0x1p32 - 1));
 }
 
-/// A layer whose bins have the colors that `colors_of` tells, times `amplitude`.
+/// A layer whose bins have the colors that `colors_of` tells, times the amplitudes of their parts.
 template <class Colors>
-WaveLayer make_layer(const Stratum& stratum, int channels, int colors, double amplitude, const Colors& colors_of) {
+WaveLayer make_layer(const Stratum& stratum, int channels, int colors, const std::vector<double>& amplitudes,
+                     const Colors& colors_of) {
   WaveLayer layer;
+  std::vector<double> amplitude_of_bin;
   layer.spacing = std::llround(stratum.spacing * static_cast<double>(std::int64_t{1} << plane_bits));
   layer.colors = colors;
   layer.first.push_back(0);
-  for (const auto& part : stratum.parts) {
-    for (const Pixel& bin : part) {
+  for (std::size_t j = 0; j < stratum.parts.size(); ++j) {
+    for (const Pixel& bin : stratum.parts[j]) {
+      amplitude_of_bin.push_back(amplitudes[j]);
       layer.bins.push_back({bin.x, bin.y});
     }
     layer.first.push_back(static_cast<std::uint32_t>(layer.bins.size()));
@@ -59,7 +62,7 @@ WaveLayer make_layer(const Stratum& stratum, int channels, int colors, double am
       layer.chance[entry] = as_word(sum);
       for (int c = 0; c < channels; ++c) {
         layer.color[entry * static_cast<std::size_t>(channels) + static_cast<std::size_t>(c)] =
-            std::complex<float>(amplitude * found.vectors(c, v));
+            std::complex<float>(amplitude_of_bin[at] * found.vectors(c, v));
       }
     }
   });
@@ -71,20 +74,24 @@ double unit_variance(const LrpOptions& options) {
   return options.even_variance ? 0.5 : std::numbers::pi * lrp_window_moments(options.strata.window).radial_energy;
 }
 
-/// Amplitude of each layer's waves; `variance` is σ² of its stratum.
-std::vector<double> amplitudes(const LrpOptions& options, const std::vector<LrpLayer>& layers, double bins) {
-  std::vector<double> wanted;
-  double total = 0, printed = 0;
+/// Amplitudes of each layer's waves, from the variance that each is to have.
+std::vector<std::vector<double>> amplitudes(const LrpOptions& options, const std::vector<LrpLayer>& layers,
+                                            double bins) {
+  std::vector<std::vector<double>> wanted;
+  double total = 0, sum = 0;
   for (const LrpLayer& layer : layers) {
-    const double variance = layer.stratum.energy / bins;
-    const double spread = variance / std::pow(layer.stratum.spacing, 2);
-    total += variance;
-    printed += spread;
-    wanted.push_back(options.amplitude == LrpAmplitude::corrected ? variance : spread);
+    const Stratum& stratum = layer.stratum;
+    const double spread = options.amplitude == LrpAmplitude::printed ? std::pow(stratum.spacing, 2) : 1;
+    std::vector<double>& variances = wanted.emplace_back();
+    for (const double energy : stratum.part_energy) {
+      const double share = options.amplitude == LrpAmplitude::parts ? energy : stratum.energy / stratum.cosines;
+      variances.push_back(share / bins / spread);
+      sum += variances.back();
+    }
+    total += stratum.energy / bins;
   }
-  const double scale = options.amplitude == LrpAmplitude::corrected ? 1 : total / printed;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    wanted[i] = std::sqrt(scale * wanted[i] / (layers[i].stratum.cosines * unit_variance(options)));
+  for (std::vector<double>& variances : wanted) {
+    for (double& value : variances) value = std::sqrt(value * total / sum / unit_variance(options));
   }
   return wanted;
 }
@@ -176,7 +183,7 @@ LrpAnalysis analyze_lrp(const Exemplar& exemplar, const LrpOptions& options, See
     axes = decorrelate(spectrum);
     add_independent_layers(options, axes, stream, analysis);
   }
-  const std::vector<double> amplitude =
+  const std::vector<std::vector<double>> amplitude =
       amplitudes(options, analysis.layers, static_cast<double>(spectrum.side()) * spectrum.side());
   for (std::size_t i = 0; i < analysis.layers.size(); ++i) {
     const LrpLayer& layer = analysis.layers[i];

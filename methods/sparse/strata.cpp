@@ -144,6 +144,19 @@ void fill_empty_parts(const std::vector<Pixel>& bins, const std::vector<Point>& 
   }
 }
 
+std::vector<Point> centers_of(const std::vector<std::vector<Pixel>>& parts) {
+  std::vector<Point> centers;
+  centers.reserve(parts.size());
+  for (const std::vector<Pixel>& part : parts) {
+    Point& center = centers.emplace_back();
+    for (const Pixel& bin : part) {
+      center.x += bin.x / static_cast<double>(part.size());
+      center.y += bin.y / static_cast<double>(part.size());
+    }
+  }
+  return centers;
+}
+
 }  // namespace
 
 PowerPlane::PowerPlane(int side)
@@ -254,7 +267,13 @@ std::vector<Stratum> stratify(const PowerPlane& power, const StrataOptions& opti
   std::ranges::stable_sort(bins, std::greater(), power_of);
 
   // A bin belongs to the share of energy that its middle falls into.
-  const double total = power.total();
+  double total = 0;
+  std::size_t strongest = 0;
+  for (const double least = options.kept * power.total(); strongest < bins.size() && (strongest == 0 || total < least);
+       ++strongest) {
+    total += power.multiplicity(bins[strongest]) * power_of(bins[strongest]);
+  }
+  bins.resize(strongest);
   std::vector<Stratum> strata(static_cast<std::size_t>(options.strata));
   double before = 0;
   for (const Pixel& bin : bins) {
@@ -288,6 +307,12 @@ std::vector<Stratum> stratify(const PowerPlane& power, const StrataOptions& opti
     const auto parts = static_cast<std::size_t>(stratum.cosines);
     stratum.parts =
         cluster_bins(erode_bins(stratum.bins, power.side(), delta, parts), stratum.cosines, stream.child(i));
+    const std::vector<Point> centers = centers_of(stratum.parts);
+    stratum.part_energy.resize(parts);
+    for (const Pixel& bin : stratum.bins) {
+      stratum.part_energy[static_cast<std::size_t>(nearest_center(bin, centers))] +=
+          power.multiplicity(bin) * power_of(bin);
+    }
   }
   return strata;
 }

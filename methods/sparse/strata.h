@@ -41,6 +41,7 @@ struct Stratum {
   int cosines = 0;          ///< J_S
   double spacing = 0;       ///< of the lattice of windows, Δ_S = T sqrt(J_S / (2 |S|)) pixels times the factor
   std::vector<std::vector<Pixel>> parts;  ///< J_S disjoint sets of bins, none empty: one is drawn of each
+  std::vector<double> part_energy;        ///< Σ P over the bins of the stratum that are nearest to each part's center
 };
 
 struct StrataOptions {
@@ -48,6 +49,7 @@ struct StrataOptions {
   int cosines = 50;
   LrpWindow window = LrpWindow::bessel;
   double spacing = 1;  ///< factor of all Δ_S
+  double kept = 0.99;  ///< part of the power that strata are cut from: the weakest bins beyond it belong to none
 };
 
 /// The bins whose distance on the torus to a bin outside of the set is at least `distance`, and of each connected piece
@@ -59,10 +61,10 @@ std::vector<Pixel> erode_bins(const std::vector<Pixel>& bins, int side, double d
 std::vector<std::vector<Pixel>> cluster_bins(const std::vector<Pixel>& bins, int parts, const Stream& stream);
 
 /// Strata of equal energy (within that of one bin), from the most to the least power, each with its parts. Bins whose
-/// power is below 1e-12 of the largest belong to none, and strata that would be empty are left out: there are fewer
-/// when single bins hold much of the energy. Cosines are shared evenly, but a stratum takes no more than it has bins in
-/// the half, and the rest goes to the others. Throws std::invalid_argument unless 1 <= strata <= cosines, the factor
-/// and some power are positive.
+/// power is below 1e-12 of the largest, and those beyond `kept`, belong to none, and strata that would be empty are
+/// left out: there are fewer when single bins hold much of the energy. Cosines are shared evenly, but a stratum takes
+/// no more than it has bins in the half, and the rest goes to the others. Throws std::invalid_argument unless 1 <=
+/// strata <= cosines, the factor and some power are positive.
 std::vector<Stratum> stratify(const PowerPlane& power, const StrataOptions& options, const Stream& stream);
 
 }  // namespace textonbench

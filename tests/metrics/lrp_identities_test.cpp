@@ -45,6 +45,7 @@ TEST(LrpIdentities, WindowAsPrintedAndConverged) {
 TEST(LrpIdentities, StrataAndCalls) {
   LrpOptions printed;
   printed.amplitude = LrpAmplitude::printed;
+  printed.strata.kept = 1;
   EXPECT_LT(measure(lrp_stratum_variance_error, {}), 1e-4);
   EXPECT_GT(measure(lrp_stratum_variance_error, printed), 0.3);
   LrpOptions lattice;

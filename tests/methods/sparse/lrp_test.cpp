@@ -20,7 +20,7 @@ using testing::ThrowsMessage;
 
 LrpOptions small_options() {
   LrpOptions options;
-  options.strata = {.strata = 2, .cosines = 9};
+  options.strata = {.strata = 2, .cosines = 9, .kept = 1};
   return options;
 }
 
@@ -182,6 +182,21 @@ TEST(Lrp, PrintedAmplitudesAttenuateWideWindows) {
   EXPECT_NEAR(variance(a[0]) + variance(a[1]), variance(b[0]) + variance(b[1]), 1e-5 * variance(a[0]));
   EXPECT_NEAR(variance(b[0]) / variance(b[1]),
               variance(a[0]) / variance(a[1]) * std::pow(a[1].pixels() / a[0].pixels(), 2), 1e-4);
+}
+
+/// Waves of unequal parts have the variance of their own.
+TEST(Lrp, PartsHaveTheVarianceOfTheBinsAroundThem) {
+  LrpOptions options = small_options();
+  options.amplitude = LrpAmplitude::parts;
+  const LrpAnalysis analysis = small_analysis(1, options);
+  for (std::size_t l = 0; l < analysis.layers.size(); ++l) {
+    const Stratum& stratum = analysis.layers[l].stratum;
+    const WaveLayer& layer = analysis.field.layers[l];
+    for (std::size_t j = 0; j < stratum.parts.size(); ++j) {
+      const double variance = std::norm(std::complex<double>(layer.color[layer.first[j]])) / 2;
+      EXPECT_NEAR(variance, stratum.part_energy[j] / (32 * 32), 1e-5 * variance);
+    }
+  }
 }
 
 /// Excess kurtosis of the noise at a point: −3/(2J) of one sum of J cosines, times the mean of Σ v⁴ over the nine

@@ -48,7 +48,7 @@ TEST(PowerPlane, HalfStandsForTheWholePlane) {
 TEST(Stratify, EnergiesAreEqualWithinOneBin) {
   for (const int strata : {1, 2, 4, 7}) {
     const PowerPlane plane = rough_plane(32);
-    const auto all = stratify(plane, {.strata = strata, .cosines = 50}, stream);
+    const auto all = stratify(plane, {.strata = strata, .cosines = 50, .kept = 1}, stream);
     ASSERT_EQ(all.size(), static_cast<std::size_t>(strata));
     double largest_bin = 0;
     for (const Pixel& bin : plane.half()) {
@@ -78,6 +78,10 @@ TEST(Stratify, PartsAreDisjointSetsOfBinsAndNoneIsEmpty) {
     const auto bins = as_set(stratum.bins);
     std::set<std::pair<int, int>> seen;
     EXPECT_EQ(stratum.parts.size(), static_cast<std::size_t>(stratum.cosines));
+    ASSERT_EQ(stratum.part_energy.size(), stratum.parts.size());
+    double energy = 0;
+    for (const double one : stratum.part_energy) energy += one;
+    EXPECT_NEAR(energy, stratum.energy, 1e-9 * energy);
     EXPECT_DOUBLE_EQ(stratum.spacing, 32 * std::sqrt(stratum.cosines / (2.0 * stratum.area)));
     for (const auto& part : stratum.parts) {
       EXPECT_FALSE(part.empty());
@@ -117,10 +121,24 @@ TEST(Stratify, CosinesThatSmallStrataCannotTakeGoToOthers) {
   PowerPlane plane(32);
   for (const Pixel& bin : plane.half()) plane.set(bin.x, bin.y, 1e-3);
   plane.set(4, 3, 10);
-  const auto all = stratify(plane, {.strata = 2, .cosines = 21}, stream);
+  const auto all = stratify(plane, {.strata = 2, .cosines = 21, .kept = 1}, stream);
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[0].cosines, 1);
   EXPECT_EQ(all[1].cosines, 20);
+}
+
+TEST(Stratify, LeavesOutTheWeakestBins) {
+  const PowerPlane plane = rough_plane(32);
+  double energy = 0, least = INFINITY;
+  std::size_t bins = 0;
+  for (const Stratum& stratum : stratify(plane, {.kept = 0.9}, stream)) {
+    energy += stratum.energy;
+    bins += stratum.bins.size();
+    for (const Pixel& bin : stratum.bins) least = std::min(least, plane.at(bin.x, bin.y));
+  }
+  EXPECT_GE(energy, 0.9 * plane.total());
+  EXPECT_LE(energy, 0.9 * plane.total() + 2 * least);
+  EXPECT_LT(bins, plane.half().size() * 3 / 4);
 }
 
 TEST(Stratify, TellsWhatIsWrong) {
