@@ -18,8 +18,8 @@ std::optional<double> rme(const Model& model, const Target& target, const Domain
 /// smooth spectrum can come near it.
 std::optional<double> smoothed_rme(const Model& model, const Target& target, const Domain& domain);
 
-/// The same as rme() without the factor 2, as EUSIPCO 2014 prints it: 1 for every P whose overlap with Q equals its own energy,
-/// so 1 for a perfect model.
+/// The same as rme() without the factor 2, as EUSIPCO 2014 prints it: 1 for every P whose overlap with Q equals its own
+/// energy, so 1 for a perfect model.
 std::optional<double> rme_printed(const Model& model, const Target& target, const Domain& domain);
 
 /// sqrt(W2² / |Ω|): root of the squared Wasserstein-2 distance a pixel, all channels together, in the exemplar's

@@ -95,7 +95,10 @@ double relative_error(const CrossSpectrum& p, const CrossSpectrum& target, doubl
 }  // namespace
 
 CrossSpectrum factor_products(std::span<const Spectrum> products, int channels) {
-  const auto pair = [](int c, int d) { return static_cast<std::size_t>(c * (c + 1) / 2 + d); };
+  const auto pair = [](int c, int d) {
+    const auto row = static_cast<std::size_t>(c);
+    return row * (row + 1) / 2 + static_cast<std::size_t>(d);
+  };
   if (products.size() != pair(channels, 0)) {
     throw std::invalid_argument(fmt::format("{} products of spectra for {} channels: expected {}", products.size(),
                                             channels, pair(channels, 0)));

@@ -88,7 +88,7 @@ WelchSpectrum::WelchSpectrum(const Image& u, const WelchOptions& options)
       for (int c = 0; c < channels_; ++c) {
         for (int d = 0; d <= c; ++d) {
           const auto a = z.row(c, ky), b = z.row(d, ky);
-          const auto sum = products_[static_cast<std::size_t>(c * (c + 1) / 2 + d)].row(0, ky);
+          const auto sum = products_[pair(c, d)].row(0, ky);
           for (std::size_t kx = 0; kx < sum.size(); ++kx) {
             // a conj(b), written out: std::complex multiplies with a branch for infinities.
             sum[kx] += scale * std::complex<float>(a[kx].real() * b[kx].real() + a[kx].imag() * b[kx].imag(),
@@ -104,7 +104,7 @@ Eigen::MatrixXcd WelchSpectrum::at(int kx, int ky) const {
   Eigen::MatrixXcd p(channels_, channels_);
   for (int c = 0; c < channels_; ++c) {
     for (int d = 0; d <= c; ++d) {
-      const std::complex<double> value(products_[static_cast<std::size_t>(c * (c + 1) / 2 + d)].at(0, kx, ky));
+      const std::complex<double> value(products_[pair(c, d)].at(0, kx, ky));
       p(c, d) = value;
       p(d, c) = std::conj(value);
     }
@@ -114,8 +114,7 @@ Eigen::MatrixXcd WelchSpectrum::at(int kx, int ky) const {
 
 double WelchSpectrum::power(int kx, int ky) const {
   double sum = 0;
-  for (int c = 0; c < channels_; ++c)
-    sum += static_cast<double>(products_[static_cast<std::size_t>(c * (c + 3) / 2)].at(0, kx, ky).real());
+  for (int c = 0; c < channels_; ++c) sum += static_cast<double>(products_[pair(c, c)].at(0, kx, ky).real());
   return sum;
 }
 

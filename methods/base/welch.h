@@ -45,6 +45,10 @@ class WelchSpectrum {
   double power(int kx, int ky) const;
 
  private:
+  std::size_t pair(int c, int d) const {
+    return static_cast<std::size_t>(c) * (static_cast<std::size_t>(c) + 1) / 2 + static_cast<std::size_t>(d);
+  }
+
   int channels_;
   std::vector<double> mean_;
   std::vector<Pixel> blocks_;

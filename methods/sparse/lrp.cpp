@@ -216,7 +216,7 @@ MethodEntry lrp_entry() {
       .reference = "Gilet, Sauvage, Vanhoey, Dischler, Ghazanfarpour, SIGGRAPH Asia 2014",
       .params = lrp_params(),
       .refuses = [](const Problem& problem, const Params& params, const Domain& domain) -> std::optional<std::string> {
-        if (const auto reason = refuse_domain(domain)) return reason;
+        if (auto reason = refuse_domain(domain)) return reason;
         return refuse_lrp(problem.exemplar, lrp_options(params));
       },
       .analyze = [](const Problem& problem, const Params& params,

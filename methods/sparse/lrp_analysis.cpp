@@ -54,7 +54,7 @@ WaveLayer make_layer(const Stratum& stratum, int channels, int colors, const std
   layer.color.resize(layer.chance.size() * static_cast<std::size_t>(channels));
   parallel_for(static_cast<int>(layer.bins.size()), [&](int bin) {
     const auto at = static_cast<std::size_t>(bin);
-    const BinColors found = colors_of(layer.bins[at].kx, layer.bins[at].ky);
+    const BinColors& found = colors_of(layer.bins[at].kx, layer.bins[at].ky);
     double sum = 0;
     for (int v = 0; v < colors; ++v) {
       const std::size_t entry = at * stride + static_cast<std::size_t>(v);
@@ -192,9 +192,9 @@ LrpAnalysis analyze_lrp(const Exemplar& exemplar, const LrpOptions& options, See
         return eigen_colors(at_bin(spectrum, kx, ky));
       }));
     } else {
-      const BinColors only{axes.eigenvectors().col(layer.axis).cast<std::complex<double>>(), Eigen::VectorXd::Ones(1)};
+      BinColors only{axes.eigenvectors().col(layer.axis).cast<std::complex<double>>(), Eigen::VectorXd::Ones(1)};
       analysis.field.layers.push_back(
-          make_layer(layer.stratum, channels, 1, amplitude[i], [&](int, int) { return only; }));
+          make_layer(layer.stratum, channels, 1, amplitude[i], [&only](int, int) -> const BinColors& { return only; }));
     }
   }
   return analysis;

@@ -14,12 +14,18 @@ namespace {
 
 int wrap(int k, int side) { return ((k % side) + side) % side; }
 
+/// Place of (x, y) on the torus, row after row.
+std::size_t place(int x, int y, int side) {
+  return static_cast<std::size_t>(wrap(y, side)) * static_cast<std::size_t>(side) +
+         static_cast<std::size_t>(wrap(x, side));
+}
+
 /// The set and its mirror image on the whole torus, row after row.
 std::vector<char> whole_plane(const std::vector<Pixel>& bins, int side) {
   std::vector<char> inside(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
   for (const Pixel& bin : bins) {
-    inside[static_cast<std::size_t>(wrap(bin.y, side) * side + wrap(bin.x, side))] = 1;
-    inside[static_cast<std::size_t>(wrap(-bin.y, side) * side + wrap(-bin.x, side))] = 1;
+    inside[place(bin.x, bin.y, side)] = 1;
+    inside[place(-bin.x, -bin.y, side)] = 1;
   }
   return inside;
 }
@@ -32,23 +38,23 @@ std::vector<int> squared_distances(const std::vector<char>& inside, int side) {
   for (int x = 0; x < side; ++x) {
     int down = far, up = far;
     for (int i = 0; i < 2 * side; ++i) {
-      const auto at = static_cast<std::size_t>((i % side) * side + x);
+      const std::size_t at = place(x, i, side);
       down = inside[at] != 0 ? std::min(far, down + 1) : 0;
       column[at] = std::min(column[at], down);
-      const auto back = static_cast<std::size_t>(((2 * side - 1 - i) % side) * side + x);
+      const std::size_t back = place(x, 2 * side - 1 - i, side);
       up = inside[back] != 0 ? std::min(far, up + 1) : 0;
       column[back] = std::min(column[back], up);
     }
   }
   for (int y = 0; y < side; ++y) {
-    const int* row = column.data() + y * side;
+    const int* row = column.data() + place(0, y, side);
     for (int x = 0; x < side; ++x) {
       int best = row[x] * row[x];
       for (int d = 1; d * d < best && d <= side / 2; ++d) {
         const int left = row[wrap(x - d, side)], right = row[wrap(x + d, side)];
         best = std::min(best, d * d + std::min(left * left, right * right));
       }
-      result[static_cast<std::size_t>(y * side + x)] = best;
+      result[place(x, y, side)] = best;
     }
   }
   return result;
@@ -68,7 +74,7 @@ std::vector<int> largest_of_piece(const std::vector<char>& inside, const std::ve
       const int x = static_cast<int>(piece[i]) % side, y = static_cast<int>(piece[i]) / side;
       for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {
-          const auto at = static_cast<std::size_t>(wrap(y + dy, side) * side + wrap(x + dx, side));
+          const std::size_t at = place(x + dx, y + dy, side);
           if (inside[at] == 0 || largest[at] >= 0) continue;
           largest[at] = 0;
           piece.push_back(at);
@@ -196,9 +202,7 @@ std::vector<Pixel> erode_bins(const std::vector<Pixel>& bins, int side, double d
   const std::vector<char> inside = whole_plane(bins, side);
   const std::vector<int> squares = squared_distances(inside, side);
   const std::vector<int> largest = largest_of_piece(inside, squares, side);
-  const auto at = [side](const Pixel& bin) {
-    return static_cast<std::size_t>(wrap(bin.y, side) * side + wrap(bin.x, side));
-  };
+  const auto at = [side](const Pixel& bin) { return place(bin.x, bin.y, side); };
   const auto eroded = [&](double square) {
     std::vector<Pixel> rest;
     for (const Pixel& bin : bins) {
@@ -213,7 +217,7 @@ std::vector<Pixel> erode_bins(const std::vector<Pixel>& bins, int side, double d
     if (squares[at(bin)] < distance * distance) steps.push_back(squares[at(bin)]);
   }
   std::ranges::sort(steps, std::greater());
-  steps.erase(std::ranges::unique(steps).begin(), steps.end());
+  steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
   for (const int square : steps) {
     rest = eroded(square);
     if (rest.size() >= least) break;

@@ -61,7 +61,7 @@ template <bool slopes>
           sine[i]);
     }
     for (int c = 0; c < channels; ++c) {
-      const float* re = cell.color + 2 * c * cell.padded + first;
+      const float* re = cell.color + std::ptrdiff_t{2} * c * cell.padded + first;
       const float* im = re + cell.padded;
       for (int i = 0; i < lanes; ++i) value[c][i] += re[i] * cosine[i] - im[i] * sine[i];
       if constexpr (slopes) {
@@ -127,7 +127,7 @@ class CellStore {
   PaddedCell at(std::int64_t cx, std::int64_t cy) {
     const auto slot = static_cast<std::size_t>((cx + 683 * cy) & (slots - 1));
     std::int32_t* kx = integers_.data() + slot * static_cast<std::size_t>(3 * padded_);
-    auto* phase = reinterpret_cast<std::uint32_t*>(kx + 2 * padded_);
+    auto* phase = reinterpret_cast<std::uint32_t*>(kx + std::ptrdiff_t{2} * padded_);
     float* color = colors_.data() + slot * static_cast<std::size_t>(2 * channels_ * padded_);
     Place& place = places_[slot];
     if (!place.drawn || place.x != cx || place.y != cy) {
@@ -140,7 +140,7 @@ class CellStore {
         kx[padded_ + static_cast<std::ptrdiff_t>(j)] = waves_[j].bin.ky;
         phase[j] = waves_[j].phase;
         float* to = color + j;
-        for (int c = 0; c < channels_; ++c, to += 2 * padded_) {
+        for (int c = 0; c < channels_; ++c, to += std::ptrdiff_t{2} * padded_) {
           to[0] = waves_[j].color[c].real();
           to[padded_] = waves_[j].color[c].imag();
         }

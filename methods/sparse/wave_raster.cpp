@@ -100,9 +100,8 @@ class TileSum {
       const std::uint32_t middle = field_.turns(low + (high - low) / 2 - lattice.center_y(row.cell));
       apart_.clear();
       for (int p = 0; p < (row.count + 1) / 2; ++p) {
-        apart_.push_back(field_.turns((y_[static_cast<std::size_t>(row.first + row.count - 1 - p)] -
-                                       y_[static_cast<std::size_t>(row.first + p)]) /
-                                      2));
+        const auto above = y_.begin() + row.first + row.count - 1 - p, below = y_.begin() + row.first + p;
+        apart_.push_back(field_.turns((*above - *below) / 2));
       }
       for (std::size_t i = 0; i < columns.size(); ++i) {
         const auto cell = std::span(drawn_).subspan(i * waves, waves);
@@ -116,7 +115,9 @@ class TileSum {
   }
 
   /// Row y of a channel of the layer's sum, and that of the squared windows.
-  const float* sum(int channel, int y) const { return sum_.data() + channel * tile_area + y * tile_side; }
+  const float* sum(int channel, int y) const {
+    return sum_.data() + channel * tile_area + std::ptrdiff_t{y} * tile_side;
+  }
   const float* squares(int y) const { return sum(field_.channels, y); }
 
  private:
@@ -127,7 +128,7 @@ class TileSum {
 
   /// Room for a layer's cells.
   void reserve(std::size_t waves) {
-    const auto columns = static_cast<std::size_t>(tile_side * field_.channels + wave_line);
+    const std::size_t columns = std::size_t{tile_side} * static_cast<std::size_t>(field_.channels) + wave_line;
     const std::size_t padded = (waves + 7) / 8 * 8;
     for (auto [buffer, size] : {std::pair{&real_, columns * waves + wave_surplus},
                                 {&imaginary_, columns * waves + wave_surplus},
@@ -182,7 +183,7 @@ class TileSum {
         std::partition_point(middle, column.squares + column.count, [most](float d) { return d < most; }) -
         column.squares);
     if (first >= end) return;
-    float* sum = sum_.data() + (row.first + y) * tile_side + column.first + first;
+    float* sum = sum_.data() + std::ptrdiff_t{row.first + y} * tile_side + column.first + first;
     windowed_.push_back({.distance_x = column.squares + first,
                          .distance_y = row.squares[y],
                          .count = end - first,

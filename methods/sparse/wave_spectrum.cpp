@@ -11,6 +11,10 @@ constexpr int nodes_a_spacing = 32;
 /// Nodes of the correlation along an axis, from −3 to 3 spacings.
 constexpr int correlation_nodes = 6 * nodes_a_spacing + 1;
 
+std::size_t node_index(int x, int y) {
+  return static_cast<std::size_t>(y) * correlation_nodes + static_cast<std::size_t>(x);
+}
+
 /// The window of the lattice point 0 at (x, y) spacings from it, with its scale.
 double scaled_window(LrpWindow window, bool even_variance, double x, double y) {
   const double own = lrp_window(window, std::hypot(x, y));
@@ -32,7 +36,10 @@ double cubic(const double (&p)[4], double t) {
 }
 
 /// Planes of C x C covariances or spectra: entry (c, d), d <= c.
-std::size_t pair_index(int c, int d) { return static_cast<std::size_t>(c * (c + 1) / 2 + d); }
+std::size_t pair_index(int c, int d) {
+  const auto row = static_cast<std::size_t>(c);
+  return row * (row + 1) / 2 + static_cast<std::size_t>(d);
+}
 
 std::size_t pair_count(int channels) { return pair_index(channels, 0); }
 
@@ -99,7 +106,7 @@ WindowCorrelation::WindowCorrelation(LrpWindow window, bool even_variance)
   constexpr int reach = 3 * nodes_a_spacing;
   for (int y = -reach; y <= reach; ++y) {
     for (int x = -reach; x <= reach; ++x) {
-      nodes_[static_cast<std::size_t>((y + reach) * correlation_nodes + x + reach)] =
+      nodes_[node_index(x + reach, y + reach)] =
           static_cast<double>(correlation.at(0, (x + side) % side, (y + side) % side)) /
           (nodes_a_spacing * nodes_a_spacing);
     }
@@ -108,7 +115,7 @@ WindowCorrelation::WindowCorrelation(LrpWindow window, bool even_variance)
 
 double WindowCorrelation::node(int x, int y) const {
   if (x < 0 || y < 0 || x >= correlation_nodes || y >= correlation_nodes) return 0;
-  return nodes_[static_cast<std::size_t>(y * correlation_nodes + x)];
+  return nodes_[node_index(x, y)];
 }
 
 double WindowCorrelation::at(double x, double y) const {

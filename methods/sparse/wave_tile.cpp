@@ -92,11 +92,12 @@ template <class Line, int height, int width>
   int p = 0;
   for (; p + height <= pairs; p += height) {
     const std::ptrdiff_t at = std::ptrdiff_t{p} * z.columns;
-    sum_wave_strip<Line, height, width>(z, rows + p * row_stride, row_stride, sines, above + at, below + at);
+    sum_wave_strip<Line, height, width>(z, rows + std::ptrdiff_t{p} * row_stride, row_stride, sines, above + at,
+                                        below + at);
   }
   for (; p < pairs; ++p) {
     const std::ptrdiff_t at = std::ptrdiff_t{p} * z.columns;
-    sum_wave_strip<Line, 1, width>(z, rows + p * row_stride, row_stride, sines, above + at, below + at);
+    sum_wave_strip<Line, 1, width>(z, rows + std::ptrdiff_t{p} * row_stride, row_stride, sines, above + at, below + at);
   }
 }
 
@@ -129,8 +130,8 @@ template <class Lanes>
         const float re = color[c].real(), im = color[c].imag();
         const Floats a = re * cosine - im * sine;
         const Floats b = re * sine + im * cosine;
-        *reinterpret_cast<Loose*>(real + c * stride + first) = a;
-        *reinterpret_cast<Loose*>(imaginary + c * stride + first) = b;
+        *reinterpret_cast<Loose*>(real + std::ptrdiff_t{c} * stride + first) = a;
+        *reinterpret_cast<Loose*>(imaginary + std::ptrdiff_t{c} * stride + first) = b;
       }
     }
     real += columns;
