@@ -212,9 +212,9 @@ TEST_F(PlanTest, GroupsOfMetricsStandForTheirLevel) {
   EXPECT_THAT(metrics("[\"@model\"]"),
               ElementsAre("kept_variance", "kernel_kurtosis", "local_kurtosis_greatest", "local_kurtosis_least",
                           "ot_distance", "poisson_impacts", "predicted_kurtosis", "rme", "rme_corrected", "rme_printed",
-                          "stratified_impacts"));
+                          "smoothed_rme", "stratified_impacts"));
   EXPECT_THAT(metrics("[\"@model\", \"rme\", \"skewness\"]"),
-              AllOf(testing::SizeIs(12), Contains("rme"), Contains("skewness")));
+              AllOf(testing::SizeIs(13), Contains("rme"), Contains("skewness")));
   EXPECT_THAT(metrics("\"@sample\""), AllOf(Contains("skewness"), Not(Contains("rme"))));
   EXPECT_THAT(metrics("\"@cost\""), AllOf(Contains("analyze_seconds"), Not(Contains("rme"))));
   EXPECT_THAT(metrics("[]"), IsEmpty());
