@@ -8,108 +8,42 @@
 #include "methods/base/aligned_buffer.h"
 #include "methods/base/image.h"
 #include "methods/base/parallel.h"
-#include "methods/base/portable_math.h"
+#include "methods/sparse/wave_lanes.h"
+#include "methods/sparse/wave_sum.h"
 
 namespace textonbench {
 namespace {
 
-constexpr int lanes = 16;
+using Lanes = SixteenLanes;
+constexpr int lanes = Lanes::count;
 
 /// Points of one task: its cells are drawn anew.
 constexpr std::size_t task_points = 1024;
 
-/// Waves of one cell, padded to whole vectors by waves of color zero: real parts of channel c from 2 c padded on,
-/// imaginary parts `padded` later.
-struct PaddedCell {
-  int padded;
-  const std::int32_t* kx;
-  const std::int32_t* ky;
-  const std::uint32_t* phase;
-  const float* color;
+/// Windows of the nine lattice points around a point at (x[i], y[i]) spacings from them, and their slopes, a spacing:
+/// whole vectors, zero beyond the windows' reach.
+struct WindowsAround {
+  alignas(64) float value[lanes];
+  alignas(64) float slope_x[lanes];
+  alignas(64) float slope_y[lanes];
 };
 
-/// Σ_j of one cell, by channel: values, and slopes along x and y in 1 / bin.
-struct CellSums {
-  float value[Image::max_channels];
-  float slope_x[Image::max_channels];
-  float slope_y[Image::max_channels];
-};
-
-float sum_lanes(const float* v) {
-  float s[lanes / 2];
-  for (int i = 0; i < lanes / 2; ++i) s[i] = v[i] + v[i + lanes / 2];
-  for (int half = lanes / 4; half >= 1; half /= 2) {
-    for (int i = 0; i < half; ++i) s[i] += s[i + half];
-  }
-  return s[0];
-}
-
-template <bool slopes>
-[[gnu::always_inline]] inline void sum_cell(const PaddedCell& cell, int channels, std::uint32_t turn_x,
-                                            std::uint32_t turn_y, CellSums& sums) {
-  alignas(64) float value[Image::max_channels][lanes] = {};
-  alignas(64) float slope_x[slopes ? Image::max_channels : 1][lanes] = {};
-  alignas(64) float slope_y[slopes ? Image::max_channels : 1][lanes] = {};
-  for (int first = 0; first < cell.padded; first += lanes) {
-    alignas(64) float cosine[lanes], sine[lanes];
-    const std::int32_t* kx = cell.kx + first;
-    const std::int32_t* ky = cell.ky + first;
-    const std::uint32_t* phase = cell.phase + first;
-    for (int i = 0; i < lanes; ++i) {
-      portable::cos_sin(
-          static_cast<std::uint32_t>(kx[i]) * turn_x + static_cast<std::uint32_t>(ky[i]) * turn_y + phase[i], cosine[i],
-          sine[i]);
-    }
-    for (int c = 0; c < channels; ++c) {
-      const float* re = cell.color + std::ptrdiff_t{2} * c * cell.padded + first;
-      const float* im = re + cell.padded;
-      for (int i = 0; i < lanes; ++i) value[c][i] += re[i] * cosine[i] - im[i] * sine[i];
-      if constexpr (slopes) {
-        for (int i = 0; i < lanes; ++i) {
-          const float turned = re[i] * sine[i] + im[i] * cosine[i];
-          slope_x[c][i] -= static_cast<float>(kx[i]) * turned;
-          slope_y[c][i] -= static_cast<float>(ky[i]) * turned;
-        }
-      }
-    }
-  }
-  for (int c = 0; c < channels; ++c) {
-    sums.value[c] = sum_lanes(value[c]);
-    if constexpr (slopes) {
-      sums.slope_x[c] = sum_lanes(slope_x[c]);
-      sums.slope_y[c] = sum_lanes(slope_y[c]);
-    }
-  }
-}
-
-__attribute__((target_clones("default", "avx2", "avx512f"))) void sum_values(const PaddedCell& cell, int channels,
-                                                                             std::uint32_t turn_x, std::uint32_t turn_y,
-                                                                             CellSums& sums) {
-  sum_cell<false>(cell, channels, turn_x, turn_y, sums);
-}
-
-__attribute__((target_clones("default", "avx2", "avx512f"))) void sum_slopes(const PaddedCell& cell, int channels,
-                                                                             std::uint32_t turn_x, std::uint32_t turn_y,
-                                                                             CellSums& sums) {
-  sum_cell<true>(cell, channels, turn_x, turn_y, sums);
-}
-
-/// Window at a distance of (x, y) spacings, and its slopes, a spacing.
-struct WindowValue {
-  float value = 0, slope_x = 0, slope_y = 0;
-};
-
-WindowValue window_at(const std::array<float, lrp_window_terms>& polynomial, float x, float y) {
-  const float t = 1 - (x * x + y * y) * (1 / 2.25F);
-  if (t <= 0) return {};
-  float p = 0, slope = 0;
+__attribute__((target_clones("default", "avx2", "avx512f"))) void windows_at(
+    const std::array<float, lrp_window_terms>& polynomial, const float* x, const float* y, WindowsAround& windows) {
+  using Floats = Lanes::Floats;
+  const Floats dx = *reinterpret_cast<const Floats*>(x), dy = *reinterpret_cast<const Floats*>(y);
+  Floats t = 1 - (dx * dx + dy * dy) * (1 / 2.25F);
+  t = t > 0 ? t : Floats{};
+  Floats p{}, slope{}, root{};
   for (int m = lrp_window_terms - 1; m >= 0; --m) {
     slope = slope * t + p;
     p = p * t + polynomial[static_cast<std::size_t>(m)];
   }
-  const float root = std::sqrt(t);
-  const float along = root * (1.5F * p + t * slope) * (-2 / 2.25F);
-  return {t * root * p, along * x, along * y};
+  for (int i = 0; i < lanes; ++i) root[i] = std::sqrt(t[i]);
+  const Floats along = root * (1.5F * p + t * slope) * (-2 / 2.25F);
+  *reinterpret_cast<Floats*>(windows.value) = t * root * p;
+  *reinterpret_cast<Floats*>(windows.slope_x) = along * dx;
+  *reinterpret_cast<Floats*>(windows.slope_y) = along * dy;
 }
 
 /// The cells that were drawn last: so many that those of a row of points are kept for the next.
@@ -124,7 +58,7 @@ class CellStore {
         integers_(static_cast<std::size_t>(3 * padded_) * slots),
         colors_(static_cast<std::size_t>(2 * channels_ * padded_) * slots) {}
 
-  PaddedCell at(std::int64_t cx, std::int64_t cy) {
+  PaddedWaves at(std::int64_t cx, std::int64_t cy) {
     const auto slot = static_cast<std::size_t>((cx + 683 * cy) & (slots - 1));
     std::int32_t* kx = integers_.data() + slot * static_cast<std::size_t>(3 * padded_);
     auto* phase = reinterpret_cast<std::uint32_t*>(kx + std::ptrdiff_t{2} * padded_);
@@ -170,45 +104,54 @@ void add_layer(const WaveField& field, const WaveLattice& lattice, std::span<con
   CellStore cells(field, lattice);
   const auto& polynomial = lrp_window_polynomial(field.window);
   const auto channels = static_cast<std::size_t>(field.channels);
-  const auto spacing = static_cast<float>(lattice.layer().spacing);
+  const float a_unit = 1 / static_cast<float>(lattice.layer().spacing);
   const auto a_pixel = static_cast<float>(1 / lattice.layer().pixels());
   const auto a_bin = static_cast<float>(2 * std::numbers::pi / (1 << field.side_bits));
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const WavePoint& point = points[i];
-    const std::int64_t cx = lattice.nearest_x(point.x), cy = lattice.nearest_y(point.y);
-    float value[Image::max_channels] = {}, slope_x[Image::max_channels] = {}, slope_y[Image::max_channels] = {};
+    const std::int64_t cx = lattice.nearest_x(points[i].x), cy = lattice.nearest_y(points[i].y);
+    std::int64_t dx[3], dy[3];
+    for (int k = 0; k < 3; ++k) {
+      dx[k] = points[i].x - lattice.center_x(cx - 1 + k);
+      dy[k] = points[i].y - lattice.center_y(cy - 1 + k);
+    }
+    alignas(64) float x[lanes], y[lanes];
+    for (int k = 0; k < lanes; ++k) {  // lanes beyond the ninth are out of reach
+      x[k] = k < most_waves_around ? static_cast<float>(dx[k % 3]) * a_unit : 2.0F;
+      y[k] = k < most_waves_around ? static_cast<float>(dy[k / 3]) * a_unit : 2.0F;
+    }
+    WindowsAround windows;
+    windows_at(polynomial, x, y, windows);
+    counts.windows += most_waves_around;
+    counts.cosines += std::int64_t{most_waves_around} * lattice.layer().waves();
+    WavesAround around;
     float squares = 0, squares_x = 0, squares_y = 0;
-    for (std::int64_t y = cy - 1; y <= cy + 1; ++y) {
-      for (std::int64_t x = cx - 1; x <= cx + 1; ++x) {
-        const std::int64_t dx = point.x - lattice.center_x(x), dy = point.y - lattice.center_y(y);
-        const WindowValue w = window_at(polynomial, static_cast<float>(dx) / spacing, static_cast<float>(dy) / spacing);
-        ++counts.windows;
-        counts.cosines += lattice.layer().waves();
-        if (w.value <= 0) continue;
-        CellSums sums;
-        if (slopes) {
-          sum_slopes(cells.at(x, y), field.channels, field.turns(dx), field.turns(dy), sums);
-        } else {
-          sum_values(cells.at(x, y), field.channels, field.turns(dx), field.turns(dy), sums);
-        }
-        squares += w.value * w.value;
-        for (std::size_t c = 0; c < channels; ++c) value[c] += w.value * sums.value[c];
-        if (!slopes) continue;
-        squares_x += w.value * w.slope_x * a_pixel;
-        squares_y += w.value * w.slope_y * a_pixel;
-        for (std::size_t c = 0; c < channels; ++c) {
-          slope_x[c] += w.slope_x * a_pixel * sums.value[c] + w.value * a_bin * sums.slope_x[c];
-          slope_y[c] += w.slope_y * a_pixel * sums.value[c] + w.value * a_bin * sums.slope_y[c];
-        }
-      }
+    for (int k = 0; k < most_waves_around; ++k) {
+      const float w = windows.value[k];
+      if (w <= 0) continue;
+      const int at = around.count++;
+      around.waves[at] = cells.at(cx - 1 + k % 3, cy - 1 + k / 3);
+      around.turn_x[at] = field.turns(dx[k % 3]);
+      around.turn_y[at] = field.turns(dy[k / 3]);
+      around.window[at] = w;
+      around.slope_x[at] = windows.slope_x[k] * a_pixel;
+      around.slope_y[at] = windows.slope_y[k] * a_pixel;
+      squares += w * w;
+      squares_x += w * around.slope_x[at];
+      squares_y += w * around.slope_y[at];
+    }
+    PointSums sums;
+    if (slopes) {
+      sum_wave_slopes(around, field.channels, a_bin, sums);
+    } else {
+      sum_wave_values(around, field.channels, sums);
     }
     const float scale = field.even_variance ? 1 / std::sqrt(squares) : 1;
     for (std::size_t c = 0; c < channels; ++c) {
-      out[c * stride + i] += scale * value[c];
+      out[c * stride + i] += scale * sums.value[c];
       if (!slopes) continue;
-      const float even = field.even_variance ? value[c] / squares : 0;
-      out[(channels + c) * stride + i] += scale * (slope_x[c] - even * squares_x);
-      out[(2 * channels + c) * stride + i] += scale * (slope_y[c] - even * squares_y);
+      const float even = field.even_variance ? sums.value[c] / squares : 0;
+      out[(channels + c) * stride + i] += scale * (sums.slope_x[c] - even * squares_x);
+      out[(2 * channels + c) * stride + i] += scale * (sums.slope_y[c] - even * squares_y);
     }
   }
 }
