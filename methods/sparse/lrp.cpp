@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -44,11 +45,13 @@ class Lrp final : public Model, public Gaussian, public Procedural {
     if (const auto reason = refuse_domain(domain)) throw std::invalid_argument(*reason);
     Image out(domain.size, analysis_.field.channels);
     add_waves(analysis_.field, seed, {domain.origin.x, domain.origin.y, domain.step}, out);
+    if (analysis_.fixed) add_structure(domain, seed, out);
     add_constant(mean(), out);
     return out;
   }
 
-  const Gaussian* gaussian() const override { return this; }
+  /// A structure is the same in every sample: no Gaussian law.
+  const Gaussian* gaussian() const override { return analysis_.fixed ? nullptr : this; }
   std::vector<double> mean() const override { return analysis_.spectrum.mean(); }
   CrossSpectrum spectrum(Extent grid) const override { return wave_spectrum(analysis_.field, grid); }
 
@@ -56,13 +59,16 @@ class Lrp final : public Model, public Gaussian, public Procedural {
   void evaluate(std::span<const Point2> points, Seed seed, std::span<float> out) const override {
     const auto channels = static_cast<std::size_t>(analysis_.field.channels);
     if (out.size() != points.size() * channels) throw std::invalid_argument(misfit(points.size(), out.size(), 1));
-    sum_waves(analysis_.field, seed, to_plane(points), false, out);
+    const std::vector<WavePoint> plane = to_plane(points);
+    sum_waves(analysis_.field, seed, plane, false, out);
+    if (analysis_.fixed) analysis_.fixed->add(seed, plane, out);
     for (std::size_t c = 0; c < channels; ++c) {
       for (float& v : out.subspan(c * points.size(), points.size())) v += static_cast<float>(mean()[c]);
     }
   }
-  int smoothness() const override { return 1; }
+  int smoothness() const override { return analysis_.fixed ? 0 : 1; }
   void gradient(std::span<const Point2> points, Seed seed, std::span<float> out) const override {
+    if (analysis_.fixed) throw std::invalid_argument("gradients of lrp with a structure: expected structure = 0");
     const std::size_t values = points.size() * static_cast<std::size_t>(analysis_.field.channels);
     if (out.size() != 2 * values) throw std::invalid_argument(misfit(points.size(), out.size(), 2));
     std::vector<float> all(3 * values);
@@ -78,10 +84,41 @@ class Lrp final : public Model, public Gaussian, public Procedural {
       // Nine windows of a square root and a polynomial; of each wave two rows share two products.
       operations += 9 * (2 * lrp_window_terms + 6 + layer.waves() * 2 * analysis_.field.channels);
     }
+    if (analysis_.fixed) {
+      const FixedPhases& fixed = *analysis_.fixed;
+      bytes += fixed.bytes();
+      // A phase, its cosine and sine, and two multiplications and additions a channel; turbulence likewise.
+      const double cosine = 24 + 4.0 * analysis_.field.channels;
+      operations += fixed.structure.cosines_at_point() * cosine;
+      for (const WaveField& field : fixed.turbulent) operations += 2 * 9 * 28.0 * field.layers.front().waves();
+    }
     return {bytes, operations};
   }
 
  private:
+  /// By points, some rows at a time.
+  void add_structure(const Domain& domain, Seed seed, Image& out) const {
+    constexpr int rows = 64;
+    const auto channels = static_cast<std::size_t>(out.channels());
+    std::vector<Point2> points;
+    std::vector<float> values;
+    for (int top = 0; top < out.height(); top += rows) {
+      points.clear();
+      for (int y = top; y < std::min(top + rows, out.height()); ++y) {
+        for (int x = 0; x < out.width(); ++x) {
+          points.push_back({domain.origin.x + domain.step * x, domain.origin.y + domain.step * y});
+        }
+      }
+      values.assign(channels * points.size(), 0);
+      analysis_.fixed->add(seed, to_plane(points), values);
+      for (std::size_t i = 0; i < values.size(); i += static_cast<std::size_t>(out.width())) {
+        const auto channel = static_cast<int>(i / points.size());
+        const int y = top + static_cast<int>(i % points.size()) / out.width();
+        for (int x = 0; x < out.width(); ++x) out.at(channel, x, y) += values[i + static_cast<std::size_t>(x)];
+      }
+    }
+  }
+
   std::string misfit(std::size_t points, std::size_t numbers, int planes) const {
     return fmt::format("{} points of lrp into {} numbers: expected {} a point", points, numbers,
                        planes * analysis_.field.channels);
@@ -131,6 +168,11 @@ LrpOptions lrp_options(const Params& params) {
                                                               : LrpAmplitude::parts;
   options.color = params.text("color") == "coherent" ? LrpColor::coherent : LrpColor::independent;
   options.even_variance = params.text("variance") == "even";
+  options.fixed.ratio = params.number("structure");
+  options.fixed.reduced = params.text("reduction") == "blocks";
+  options.fixed.turbulence = params.number("turbulence");
+  options.fixed.placement = params.text("placement") == "random";
+  options.footprint = params.number("footprint");
   return options;
 }
 
@@ -158,10 +200,39 @@ std::span<const ParamSpec> lrp_params() {
        .default_value = 0.99,
        .unit = "",
        .help = "part of the power that strata are cut from; 1, as in the paper, spreads the weakest stratum over all "
-               "that is "
-               "left of the spectrum",
+               "that is left of the spectrum",
        .min = 0.01,
        .max = 1},
+      {.name = "structure",
+       .default_value = 0.0,
+       .unit = "",
+       .help = "part of the power, that of the strongest bins, which keeps the phases of a block of the exemplar: 0 is "
+               "noise, 1 the block itself, repeated",
+       .min = 0,
+       .max = 1},
+      {.name = "reduction",
+       .default_value = std::string("blocks"),
+       .unit = "",
+       .help = "of the structure: blocks: to its part of the cosines, in blocks as small as 1/256 of precision needs; "
+               "none: all its bins, at the cost of as many cosines",
+       .choices = {"blocks", "none"}},
+      {.name = "turbulence",
+       .default_value = 0.0,
+       .unit = "pixel",
+       .help = "standard deviation, along an axis, of where the structure is displaced to",
+       .min = 0,
+       .max = 1000},
+      {.name = "placement",
+       .default_value = std::string("fixed"),
+       .unit = "",
+       .help = "of the structure: fixed; or random: blocks of half its side are taken from anywhere in it",
+       .choices = {"fixed", "random"}},
+      {.name = "footprint",
+       .default_value = 0.0,
+       .unit = "pixel",
+       .help = "side of the pixels that the noise is filtered for by clamping its frequencies; 0: values at points",
+       .min = 0,
+       .max = 65536},
       {.name = "color",
        .default_value = std::string("coherent"),
        .unit = "",

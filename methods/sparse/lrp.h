@@ -13,6 +13,7 @@
 
 #include "methods/base/welch.h"
 #include "methods/method.h"
+#include "methods/sparse/fixed_phases.h"
 #include "methods/sparse/strata.h"
 #include "methods/sparse/wave_field.h"
 
@@ -34,6 +35,8 @@ struct LrpOptions {
   LrpAmplitude amplitude = LrpAmplitude::corrected;
   LrpColor color = LrpColor::coherent;
   bool even_variance = true;
+  FixedPhaseOptions fixed;
+  double footprint = 0;  ///< side of the pixels that the noise is filtered for; 0: its values at points
 };
 
 /// What a layer is made of.
@@ -46,6 +49,8 @@ struct LrpAnalysis {
   WelchSpectrum spectrum;
   std::vector<LrpLayer> layers;
   WaveField field;
+  Pixel block;                       ///< corner of the block of the exemplar that the structure is taken from
+  std::optional<FixedPhases> fixed;  ///< none when r = 0
 };
 
 /// A reason why an exemplar has no such analysis: a side below 32 pixels, blocks that do not fit, fewer cosines than

@@ -7,8 +7,10 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "methods/base/convolution.h"
 #include "methods/base/parallel.h"
 #include "methods/sparse/lrp.h"
+#include "methods/sparse/wave_filter.h"
 
 namespace textonbench {
 namespace {
@@ -107,6 +109,12 @@ PowerPlane power_plane(int side, const Power& power) {
   return plane;
 }
 
+PowerPlane trace_plane(const WelchSpectrum& spectrum) {
+  return power_plane(spectrum.side(), [&](const Pixel& bin) {
+    return spectrum.power(bin.x, bin.y < 0 ? bin.y + spectrum.side() : bin.y);
+  });
+}
+
 /// Axes of the color space, the columns, from the least variance to the most.
 Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> decorrelate(const WelchSpectrum& spectrum) {
   const PowerPlane plane(spectrum.side());
@@ -117,16 +125,28 @@ Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> decorrelate(const WelchSpectrum& 
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(sum);
 }
 
-void add_coherent_layers(const LrpOptions& options, const Stream& stream, LrpAnalysis& analysis) {
-  const WelchSpectrum& spectrum = analysis.spectrum;
-  const PowerPlane plane = power_plane(spectrum.side(), [&](const Pixel& bin) {
-    return spectrum.power(bin.x, bin.y < 0 ? bin.y + spectrum.side() : bin.y);
-  });
-  for (Stratum& stratum : stratify(plane, options.strata, stream)) analysis.layers.push_back({std::move(stratum), -1});
+/// What the noise is left with beside a structure: its strata, or none when that holds all the power.
+std::vector<Stratum> noise_strata(PowerPlane plane, const std::vector<Pixel>& fixed, const LrpOptions& options,
+                                  const Stream& stream) {
+  const double total = plane.total();
+  for (const Pixel& bin : fixed) plane.set(bin.x, bin.y, 0);
+  if (plane.total() <= 1e-9 * total) return {};
+  StrataOptions left = options.strata;
+  left.cosines = std::max(1, static_cast<int>(std::lround((1 - options.fixed.ratio) * options.strata.cosines)));
+  left.strata = std::min(left.strata, left.cosines);
+  return stratify(plane, left, stream);
 }
 
-void add_independent_layers(const LrpOptions& options, const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>& axes,
-                            const Stream& stream, LrpAnalysis& analysis) {
+void add_coherent_layers(const LrpOptions& options, const std::vector<Pixel>& fixed, const Stream& stream,
+                         LrpAnalysis& analysis) {
+  for (Stratum& stratum : noise_strata(trace_plane(analysis.spectrum), fixed, options, stream)) {
+    analysis.layers.push_back({std::move(stratum), -1});
+  }
+}
+
+void add_independent_layers(const LrpOptions& options, const std::vector<Pixel>& fixed,
+                            const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>& axes, const Stream& stream,
+                            LrpAnalysis& analysis) {
   const int channels = analysis.spectrum.channels();
   for (int axis = channels - 1; axis >= 0; --axis) {
     if (axes.eigenvalues()[axis] <= 1e-10 * axes.eigenvalues()[channels - 1]) continue;
@@ -134,9 +154,57 @@ void add_independent_layers(const LrpOptions& options, const Eigen::SelfAdjointE
     const PowerPlane plane = power_plane(analysis.spectrum.side(), [&](const Pixel& bin) {
       return (direction.adjoint() * at_bin(analysis.spectrum, bin.x, bin.y) * direction).value().real();
     });
-    for (Stratum& stratum : stratify(plane, options.strata, stream.child(static_cast<std::uint64_t>(axis)))) {
+    for (Stratum& stratum : noise_strata(plane, fixed, options, stream.child(static_cast<std::uint64_t>(axis)))) {
       analysis.layers.push_back({std::move(stratum), axis});
     }
+  }
+}
+
+/// The layers of turbulence, "a rough stratification and a low cosine budget": two strata of three cosines each.
+std::vector<WaveField> turbulent_layers(const PowerPlane& trace, const LrpOptions& options, const WaveField& like,
+                                        const Stream& stream) {
+  LrpOptions rough = options;
+  rough.strata.strata = 2;
+  rough.strata.cosines = 6;
+  rough.amplitude = LrpAmplitude::corrected;
+  std::vector<LrpLayer> layers;
+  for (Stratum& stratum : stratify(trace, rough.strata, stream)) layers.push_back({std::move(stratum), -1});
+  const auto amplitude = amplitudes(rough, layers, static_cast<double>(trace.side()) * trace.side());
+  const BinColors gray{Eigen::MatrixXcd::Ones(1, 1), Eigen::VectorXd::Ones(1)};
+  std::vector<WaveField> fields;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    WaveField& field = fields.emplace_back(like);
+    field.channels = 1;
+    field.layers = {
+        make_layer(layers[i].stratum, 1, 1, amplitude[i], [&gray](int, int) -> const BinColors& { return gray; })};
+  }
+  return fields;
+}
+
+/// The block nearest to the middle of the exemplar.
+Pixel middle_block(const WelchSpectrum& spectrum, Extent size) {
+  const auto away = [&](const Pixel& corner) {
+    return std::hypot(2 * corner.x + spectrum.side() - size.width, 2 * corner.y + spectrum.side() - size.height);
+  };
+  return *std::ranges::min_element(spectrum.blocks(), {}, away);
+}
+
+/// Takes the structure of those bins from a block of the exemplar.
+void fix_phases(const Exemplar& exemplar, const LrpOptions& options, const std::vector<Pixel>& bins,
+                const Stream& stream, LrpAnalysis& analysis) {
+  const int side = analysis.spectrum.side();
+  analysis.block = middle_block(analysis.spectrum, exemplar.pixels.extent());
+  Image block = crop(exemplar.pixels, analysis.block.x, analysis.block.y, {side, side});
+  std::vector<double> opposite = analysis.spectrum.mean();
+  for (double& v : opposite) v = -v;
+  add_constant(opposite, block);
+  const int cosines = std::max(1, static_cast<int>(std::lround(options.fixed.ratio * options.strata.cosines)));
+  Structure structure(restrict_to_bins(block, bins), bins, {.cosines = options.fixed.reduced ? cosines : 0});
+  if (options.footprint > 0) structure = structure.filtered(options.footprint);
+  FixedPhases& fixed =
+      analysis.fixed.emplace(FixedPhases{std::move(structure), options.fixed.turbulence, {}, options.fixed.placement});
+  if (fixed.turbulence > 0) {
+    fixed.turbulent = turbulent_layers(trace_plane(analysis.spectrum), options, analysis.field, stream);
   }
 }
 
@@ -158,6 +226,15 @@ std::optional<std::string> refuse_lrp(const Exemplar& exemplar, const LrpOptions
     return fmt::format("lrp of {} cosines in {} strata: expected at least one cosine in each", options.strata.cosines,
                        options.strata.strata);
   }
+  const FixedPhaseOptions& fixed = options.fixed;
+  if (!(fixed.ratio >= 0 && fixed.ratio <= 1)) {
+    return fmt::format("lrp with a structure of {} of the power: expected a number from 0 to 1", fixed.ratio);
+  }
+  for (const auto& [name, value] : {std::pair{"turbulence", fixed.turbulence}, {"footprint", options.footprint}}) {
+    if (!(std::isfinite(value) && value >= 0)) {
+      return fmt::format("lrp with {} = {} pixels: expected a finite number from 0 on", name, value);
+    }
+  }
   return std::nullopt;
 }
 
@@ -167,7 +244,7 @@ LrpAnalysis analyze_lrp(const Exemplar& exemplar, const LrpOptions& options, See
     throw std::invalid_argument(fmt::format("{}: {}", exemplar.name, *reason));
   }
   const Stream stream = Stream(seed).child("lrp clusters");
-  LrpAnalysis analysis{WelchSpectrum(exemplar.pixels, options.welch), {}, {}};
+  LrpAnalysis analysis{WelchSpectrum(exemplar.pixels, options.welch), {}, {}, {}, {}};
   const WelchSpectrum& spectrum = analysis.spectrum;
   const int channels = spectrum.channels();
   analysis.field.channels = channels;
@@ -175,13 +252,16 @@ LrpAnalysis analyze_lrp(const Exemplar& exemplar, const LrpOptions& options, See
   analysis.field.window = options.strata.window;
   analysis.field.even_variance = options.even_variance;
 
+  const std::vector<Pixel> fixed = strongest_bins(trace_plane(spectrum), options.fixed.ratio);
+  if (!fixed.empty()) fix_phases(exemplar, options, fixed, stream.child("turbulence"), analysis);
+
   const bool coherent = options.color == LrpColor::coherent || channels == 1;
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes;
   if (coherent) {
-    add_coherent_layers(options, stream, analysis);
+    add_coherent_layers(options, fixed, stream, analysis);
   } else {
     axes = decorrelate(spectrum);
-    add_independent_layers(options, axes, stream, analysis);
+    add_independent_layers(options, fixed, axes, stream, analysis);
   }
   const std::vector<std::vector<double>> amplitude =
       amplitudes(options, analysis.layers, static_cast<double>(spectrum.side()) * spectrum.side());
@@ -197,6 +277,7 @@ LrpAnalysis analyze_lrp(const Exemplar& exemplar, const LrpOptions& options, See
           make_layer(layer.stratum, channels, 1, amplitude[i], [&only](int, int) -> const BinColors& { return only; }));
     }
   }
+  clamp_frequencies(options.footprint, analysis.field);
   return analysis;
 }
 

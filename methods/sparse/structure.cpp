@@ -8,6 +8,7 @@
 
 #include "methods/base/fft.h"
 #include "methods/base/parallel.h"
+#include "methods/sparse/wave_filter.h"
 
 namespace textonbench {
 namespace {
@@ -139,6 +140,29 @@ PaddedWaves Structure::waves_of(std::size_t block) const {
   const std::int32_t* kx = integers_.data() + block * 3 * static_cast<std::size_t>(padded_);
   return {padded_, kx, kx + padded_, reinterpret_cast<const std::uint32_t*>(kx + std::ptrdiff_t{2} * padded_),
           colors_.data() + block * 2 * static_cast<std::size_t>(padded_ * image_.channels())};
+}
+
+Structure Structure::filtered(double footprint, bool mip) const {
+  const int whole = image_.width();
+  int side = side_;
+  while (mip && is_cut() && side < whole && 4 * side <= footprint) side *= 2;
+  if (side > side_) {
+    Structure means(image_);
+    means.cut(side, 1, {{0, 0}});
+    return means;
+  }
+  Structure clamped(*this);
+  const double period = std::ldexp(1.0, period_bits_);
+  const auto blocks = static_cast<std::size_t>(whole / side) * static_cast<std::size_t>(whole / side);
+  for (std::size_t block = 0; block < blocks; ++block) {
+    const PaddedWaves waves = clamped.waves_of(block);
+    float* color = clamped.colors_.data() + block * 2 * static_cast<std::size_t>(padded_ * image_.channels());
+    for (int j = 0; j < cosines_; ++j) {
+      const auto part = static_cast<float>(box_response(waves.kx[j], waves.ky[j], period, footprint));
+      for (int i = 0; i < 2 * image_.channels(); ++i) color[std::ptrdiff_t{i} * padded_ + j] *= part;
+    }
+  }
+  return clamped;
 }
 
 void Structure::add(const WavePoint& point, float weight, float* out) const {

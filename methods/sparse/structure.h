@@ -38,6 +38,9 @@ class Structure {
   /// `bins` of the half, which the image is made of.
   Structure(Image image, const std::vector<Pixel>& bins, const StructureOptions& options);
 
+  /// Of the image's pixels, which is what a lookup repeats after.
+  int period() const { return image_.width(); }
+
   /// What is approximated, zero mean over the exemplar.
   const Image& image() const { return image_; }
   /// Side of the blocks, pixels: that of the image when it is not cut.
@@ -50,10 +53,16 @@ class Structure {
   /// Cosines that are evaluated at a point.
   int cosines_at_point() const { return (is_cut() ? 4 : 1) * cosines_; }
 
+  /// The structure seen through square pixels of a side: cosines by box_response() (wave_filter.h). A block has its own
+  /// zero frequency, which no clamping removes: blocks that are smaller than half a footprint give way to larger ones
+  /// of one mean each, as of a mip map, unless `mip` is false.
+  Structure filtered(double footprint, bool mip = true) const;
+
   /// Adds weight times the structure at a point, pixel (0, 0) of the image being at the origin.
   void add(const WavePoint& point, float weight, float* out) const;
 
  private:
+  explicit Structure(Image image) : image_(std::move(image)) {}
   bool is_cut() const { return side_ < image_.width(); }
   /// Cuts the image into blocks of a side and takes the strongest cosines of each.
   void cut(int side, int cosines, const std::vector<Pixel>& bins);
