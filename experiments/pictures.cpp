@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "experiments/conditional_pictures.h"
+#include "experiments/lrp_pictures.h"
 #include "methods/base/parallel.h"
 #include "methods/base/spectrum.h"
 
@@ -113,8 +114,9 @@ constexpr std::array general_entries{
 std::span<const PictureEntry> picture_catalog() {
   static const std::vector<PictureEntry> all = [] {
     std::vector<PictureEntry> entries(general_entries.begin(), general_entries.end());
-    const std::span<const PictureEntry> more = conditional_pictures();
-    entries.insert(entries.end(), more.begin(), more.end());
+    for (const std::span<const PictureEntry> more : {conditional_pictures(), lrp_pictures()}) {
+      entries.insert(entries.end(), more.begin(), more.end());
+    }
     return entries;
   }();
   return all;

@@ -25,7 +25,7 @@ struct PictureEntry {
 /// sample, sample_2, sample_3 (the first three samples), exemplar, periodic_component, smooth_component (plus 1/2),
 /// exemplar_modulus, periodic_modulus, exemplar_phase, sample_modulus, mean_modulus (of the mean power of all samples),
 /// texton, sample_far, sample_near (close-ups of the first sample: of a view of the ground), sample_phase, and those of
-/// conditional_pictures.h.
+/// conditional_pictures.h and lrp_pictures.h.
 std::span<const PictureEntry> picture_catalog();
 /// Throws std::invalid_argument naming the nearest known name.
 const PictureEntry& find_picture(std::string_view name);

@@ -3,6 +3,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "experiments/metrics/autocorrelation_peak.h"
 #include "experiments/metrics/autocovariance.h"
 #include "experiments/metrics/border_cross.h"
 #include "experiments/metrics/color_covariance.h"
@@ -20,6 +21,7 @@
 #include "experiments/metrics/spot_identity_catalog.h"
 #include "experiments/metrics/texton_quality.h"
 #include "experiments/metrics/transport_identities.h"
+#include "experiments/metrics/verbatim_copy.h"
 
 namespace textonbench {
 namespace {
@@ -220,6 +222,24 @@ constexpr std::array general_metrics{
                 .reference = "patch_distance to the law of infinitely many impacts of the model's own texton",
                 .source = "patch_distance",
                 .of_limit = limit_patch_distance},
+    MetricEntry{.name = "verbatim_copy",
+                .title = "Copied pairs of neighbors",
+                .unit = "1",
+                .level = MetricLevel::sample,
+                .better = Better::lower,
+                .reference = "part of 128 pairs of neighbors whose nearest 7 x 7 patches of the exemplar are neighbors",
+                .source = "verbatim_copy",
+                .of_samples = verbatim_copy,
+                .identity = true},
+    MetricEntry{.name = "autocorrelation_peak_error",
+                .title = "Error of the autocorrelation's peak",
+                .unit = "1",
+                .level = MetricLevel::sample,
+                .better = Better::lower,
+                .reference = "|ρ − ρ of the exemplar| at its highest peak from 4 pixels to a third of the side",
+                .source = "autocorrelation_peak",
+                .of_samples = autocorrelation_peak_error,
+                .identity = true},
     MetricEntry{.name = "analyze_seconds",
                 .title = "Analysis time",
                 .unit = "s",

@@ -2,23 +2,38 @@
 
 #include <array>
 
+#include "experiments/metrics/lrp_estimates.h"
 #include "experiments/metrics/lrp_identities.h"
+#include "experiments/metrics/lrp_structure.h"
 
 namespace textonbench {
 namespace {
 
 constexpr MetricEntry lrp_row(std::string_view name, std::string_view title,
                               std::optional<double> (*of_model)(const Model&, const Target&, const Domain&),
-                              std::string_view reference, Better better = Better::neither) {
+                              std::string_view reference, Better better = Better::neither,
+                              std::string_view source = "lrp_identities") {
   return {.name = name,
           .title = title,
           .unit = "1",
           .level = MetricLevel::model,
           .better = better,
           .reference = reference,
-          .source = "lrp_identities",
+          .source = source,
           .of_model = of_model,
           .identity = true};
+}
+
+constexpr MetricEntry structure_row(std::string_view name, std::string_view title,
+                                    std::optional<double> (*of_model)(const Model&, const Target&, const Domain&),
+                                    std::string_view reference, Better better = Better::neither) {
+  return lrp_row(name, title, of_model, reference, better, "lrp_structure");
+}
+
+constexpr MetricEntry estimate_row(std::string_view name, std::string_view title,
+                                   std::optional<double> (*of_model)(const Model&, const Target&, const Domain&),
+                                   std::string_view reference, Better better = Better::neither) {
+  return lrp_row(name, title, of_model, reference, better, "lrp_estimates");
 }
 
 }  // namespace
@@ -51,7 +66,44 @@ std::span<const MetricEntry> lrp_metrics() {
       lrp_row("lrp_coverage", "Coverage of strata by windows", lrp_coverage,
               "noise-equivalent areas over that of the stratum, half plane"),
       lrp_row("lrp_calls", "Windows and cosines a point", lrp_calls, "counted", Better::lower),
-      lrp_row("lrp_calls_ratio", "Windows and cosines over 9 (J + s)", lrp_calls_ratio, "counted")};
+      lrp_row("lrp_calls_ratio", "Windows and cosines over 9 (J + s)", lrp_calls_ratio, "counted"),
+      structure_row("lrp_copy_error", "Structure against the exemplar's block", lrp_copy_error,
+                    "root-mean-square difference over the standard deviation", Better::lower),
+      structure_row("lrp_printed_copy_error", "Equation 4 as printed against the exemplar's block",
+                    lrp_printed_copy_error, "times the windows' sum"),
+      structure_row("lrp_structure_deviation", "Reduced structure against its image", lrp_structure_deviation,
+                    "mean |difference|", Better::lower),
+      structure_row("lrp_block_side", "Side of the structure's blocks", lrp_block_side, "pixels"),
+      structure_row("lrp_table_entries", "Frequencies kept", lrp_table_entries, "of noise and structure",
+                    Better::lower),
+      structure_row("lrp_distortion_jump", "Jump of the turbulence at borders of blocks", lrp_distortion_jump,
+                    "root-mean-square over 2^-10 pixel, σ", Better::lower),
+      structure_row("lrp_swapped_distortion_jump", "The same with turbulence inside of blocks",
+                    lrp_swapped_distortion_jump, "root-mean-square over 2^-10 pixel, σ"),
+      structure_row("lrp_jump", "Jump at borders of windows, cells and blocks", lrp_jump,
+                    "largest over 2^-12 pixel, standard deviations", Better::lower),
+      structure_row("lrp_fixed_time_ratio", "Time with fixed phases over time without", lrp_fixed_time_ratio,
+                    "processor time of points, as many cosines"),
+      structure_row("lrp_placement_time_ratio", "Time with random placement over time without",
+                    lrp_placement_time_ratio, "processor time of points"),
+      structure_row("lrp_radial_change", "Change of the structure's radial power", lrp_radial_change,
+                    "mean |dB| of octaves, by turbulence and placement", Better::lower),
+      estimate_row("lrp_welch_ratio", "Error of Welch's estimate over that of a periodogram", lrp_welch_ratio,
+                   "of the model's own noise", Better::lower),
+      estimate_row("lrp_noise_filter_error", "Clamped noise against means over pixels", lrp_noise_filter_error,
+                   "pixels of 8 x 8", Better::lower),
+      estimate_row("lrp_noise_aliasing_error", "Noise at points against means over pixels", lrp_noise_aliasing_error,
+                   "pixels of 8 x 8"),
+      estimate_row("lrp_structure_filter_error", "Clamped structure with mip map against means over pixels",
+                   lrp_structure_filter_error, "pixels of 8 x 8", Better::lower),
+      estimate_row("lrp_structure_clamp_error", "Clamped structure against means over pixels",
+                   lrp_structure_clamp_error, "pixels of 8 x 8, no mip map"),
+      estimate_row("lrp_structure_aliasing_error", "Structure at points against means over pixels",
+                   lrp_structure_aliasing_error, "pixels of 8 x 8"),
+      estimate_row("lrp_structure_survival", "Non-Gaussianity that fixed phases keep", lrp_structure_survival,
+                   "1 - e(r) / e(0) of skewness and kurtosis in five octaves", Better::higher),
+      estimate_row("lrp_suggested_structure", "Suggested part of fixed phases", lrp_suggested_structure,
+                   "least r that keeps half of the non-Gaussianity")};
   return entries;
 }
 

@@ -46,6 +46,7 @@ struct LrpLayer {
 };
 
 struct LrpAnalysis {
+  LrpOptions options;
   WelchSpectrum spectrum;
   std::vector<LrpLayer> layers;
   WaveField field;

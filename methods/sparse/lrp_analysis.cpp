@@ -244,7 +244,7 @@ LrpAnalysis analyze_lrp(const Exemplar& exemplar, const LrpOptions& options, See
     throw std::invalid_argument(fmt::format("{}: {}", exemplar.name, *reason));
   }
   const Stream stream = Stream(seed).child("lrp clusters");
-  LrpAnalysis analysis{WelchSpectrum(exemplar.pixels, options.welch), {}, {}, {}, {}};
+  LrpAnalysis analysis{options, WelchSpectrum(exemplar.pixels, options.welch), {}, {}, {}, {}};
   const WelchSpectrum& spectrum = analysis.spectrum;
   const int channels = spectrum.channels();
   analysis.field.channels = channels;

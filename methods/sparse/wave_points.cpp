@@ -116,8 +116,9 @@ void add_layer(const WaveField& field, const WaveLattice& lattice, std::span<con
     }
     alignas(64) float x[lanes], y[lanes];
     for (int k = 0; k < lanes; ++k) {  // lanes beyond the ninth are out of reach
-      x[k] = k < most_waves_around ? static_cast<float>(dx[k % 3]) * a_unit : 2.0F;
-      y[k] = k < most_waves_around ? static_cast<float>(dy[k / 3]) * a_unit : 2.0F;
+      const int column = k % 3, row = k / 3;
+      x[k] = k < most_waves_around ? static_cast<float>(dx[column]) * a_unit : 2.0F;
+      y[k] = k < most_waves_around ? static_cast<float>(dy[row]) * a_unit : 2.0F;
     }
     WindowsAround windows;
     windows_at(polynomial, x, y, windows);

@@ -45,7 +45,8 @@ TEST(PlaceAtRandom, WeightsAddUpAndChangeWithoutJumps) {
         EXPECT_LT(places[k].point.x - point.x, period * pixel);
         sum += places[k].weight;
         // A function of the block alone stands for what is looked up.
-        weighted += places[k].weight * static_cast<float>((places[k].point.x - point.x) / pixel) / period;
+        const std::int64_t shift = (places[k].point.x - point.x) / pixel;
+        weighted += places[k].weight * static_cast<float>(shift) / period;
       }
       EXPECT_NEAR(sum, 1, 1e-6);
       if (i > 0) {
@@ -149,6 +150,7 @@ TEST(FixedPhases, AreContinuous) {
       const auto model = make_lrp(analysis_of({.ratio = 0.3, .turbulence = turbulence, .placement = placement}));
       constexpr int count = 40000;
       std::vector<Point2> points;
+      points.reserve(count);
       for (int i = 0; i < count; ++i) points.push_back({-100 + i / 128.0, 3 + i / 301.0});
       std::vector<float> values(count), finer(count);
       model->procedural()->evaluate(points, Seed{3}, values);
