@@ -73,7 +73,7 @@ std::span<const MetricEntry> lrp_metrics() {
                     lrp_printed_copy_error, "times the windows' sum"),
       structure_row("lrp_structure_deviation", "Reduced structure against its image", lrp_structure_deviation,
                     "mean |difference|", Better::lower),
-      structure_row("lrp_block_side", "Side of the structure's blocks", lrp_block_side, "pixels"),
+      structure_row("lrp_block_side", "Side of blocks", lrp_block_side, "pixels"),
       structure_row("lrp_table_entries", "Frequencies kept", lrp_table_entries, "of noise and structure",
                     Better::lower),
       structure_row("lrp_distortion_jump", "Jump of the turbulence at borders of blocks", lrp_distortion_jump,
@@ -100,8 +100,9 @@ std::span<const MetricEntry> lrp_metrics() {
                    lrp_structure_clamp_error, "pixels of 8 x 8, no mip map"),
       estimate_row("lrp_structure_aliasing_error", "Structure at points against means over pixels",
                    lrp_structure_aliasing_error, "pixels of 8 x 8"),
-      estimate_row("lrp_structure_survival", "Non-Gaussianity that fixed phases keep", lrp_structure_survival,
-                   "1 - e(r) / e(0) of skewness and kurtosis in five octaves", Better::higher),
+      estimate_row("lrp_structure_survival", "Survival", lrp_structure_survival,
+                   "part of the non-Gaussianity, skewness and kurtosis in five octaves, that fixed phases keep",
+                   Better::higher),
       estimate_row("lrp_suggested_structure", "Suggested part of fixed phases", lrp_suggested_structure,
                    "least r that keeps half of the non-Gaussianity")};
   return entries;

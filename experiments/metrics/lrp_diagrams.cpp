@@ -112,7 +112,9 @@ Image windows_picture(const LrpAnalysis& lrp) {
     for (const Wave& wave : waves) {
       for (int y = 0; y < side; ++y) {
         for (int x = 0; x < side; ++x) {
-          const double bins = std::hypot(x - side / 2 - wave.bin.kx, y - side / 2 - wave.bin.ky);
+          const int kx = x - side / 2, ky = y - side / 2;
+          const double bins =
+              std::min(std::hypot(kx - wave.bin.kx, ky - wave.bin.ky), std::hypot(kx + wave.bin.kx, ky + wave.bin.ky));
           const double frequency = bins * lattice.layer().pixels() / side;
           if (frequency >= 2) continue;
           const auto part = static_cast<float>(table[static_cast<std::size_t>(128 * frequency)]);

@@ -60,30 +60,53 @@ std::vector<int> squared_distances(const std::vector<char>& inside, int side) {
   return result;
 }
 
-/// The largest squared distance in the connected piece of each place that is inside.
-std::vector<int> largest_of_piece(const std::vector<char>& inside, const std::vector<int>& distances, int side) {
-  std::vector<int> largest(inside.size(), -1);
+/// Number of the connected piece (eight neighbors) of each place that is inside, −1 outside.
+std::vector<int> pieces_of(const std::vector<char>& inside, int side) {
+  std::vector<int> pieces(inside.size(), -1);
   std::vector<std::size_t> piece;
+  int count = 0;
   for (std::size_t start = 0; start < inside.size(); ++start) {
-    if (inside[start] == 0 || largest[start] >= 0) continue;
+    if (inside[start] == 0 || pieces[start] >= 0) continue;
     piece.assign(1, start);
-    largest[start] = 0;
-    int top = 0;
+    pieces[start] = count;
     for (std::size_t i = 0; i < piece.size(); ++i) {
-      top = std::max(top, distances[piece[i]]);
       const int x = static_cast<int>(piece[i]) % side, y = static_cast<int>(piece[i]) / side;
       for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {
           const std::size_t at = place(x + dx, y + dy, side);
-          if (inside[at] == 0 || largest[at] >= 0) continue;
-          largest[at] = 0;
+          if (inside[at] == 0 || pieces[at] >= 0) continue;
+          pieces[at] = count;
           piece.push_back(at);
         }
       }
     }
-    for (const std::size_t at : piece) largest[at] = top;
+    ++count;
   }
-  return largest;
+  return pieces;
+}
+
+/// Whether a bin is in the middle of its piece: no neighbor is farther from the outside by more than half a bin, and
+/// none within a distance is half as far again.
+bool is_in_the_middle(const Pixel& bin, const std::vector<int>& pieces, const std::vector<int>& squares, int side,
+                      double distance) {
+  const std::size_t here = place(bin.x, bin.y, side);
+  const double wide = std::sqrt(squares[here]);
+  const double next = std::pow(wide + 0.5, 2), further = std::max(next, std::pow(wide * 1.5, 2));
+  const int reach = static_cast<int>(std::min(distance, side / 2.0));
+  // Neighbors first: most bins have a wider one among them.
+  for (int around = 1; around <= reach; ++around) {
+    for (int i = 0; i < 8 * around; ++i) {
+      const int along = i % (2 * around) - around;
+      const int edge = i / (2 * around);
+      const int dx = edge == 0 ? along : edge == 1 ? around : edge == 2 ? -along : -around;
+      const int dy = edge == 0 ? -around : edge == 1 ? along : edge == 2 ? around : -along;
+      const std::size_t at = place(bin.x + dx, bin.y + dy, side);
+      if (pieces[at] == pieces[here] && squares[at] > (around == 1 ? next : further) &&
+          dx * dx + dy * dy <= distance * distance)
+        return false;
+    }
+  }
+  return true;
 }
 
 struct Point {
@@ -201,12 +224,17 @@ double PowerPlane::total() const {
 std::vector<Pixel> erode_bins(const std::vector<Pixel>& bins, int side, double distance, std::size_t least) {
   const std::vector<char> inside = whole_plane(bins, side);
   const std::vector<int> squares = squared_distances(inside, side);
-  const std::vector<int> largest = largest_of_piece(inside, squares, side);
+  const std::vector<int> pieces = pieces_of(inside, side);
   const auto at = [side](const Pixel& bin) { return place(bin.x, bin.y, side); };
+  std::vector<char> middle(bins.size());
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    const bool narrow = squares[at(bins[i])] < distance * distance;
+    middle[i] = narrow && is_in_the_middle(bins[i], pieces, squares, side, distance) ? 1 : 0;
+  }
   const auto eroded = [&](double square) {
     std::vector<Pixel> rest;
-    for (const Pixel& bin : bins) {
-      if (squares[at(bin)] >= std::min<double>(square, largest[at(bin)])) rest.push_back(bin);
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+      if (squares[at(bins[i])] >= square || middle[i] != 0) rest.push_back(bins[i]);
     }
     return rest;
   };

@@ -52,9 +52,10 @@ struct StrataOptions {
   double kept = 0.99;  ///< part of the power that strata are cut from: the weakest bins beyond it belong to none
 };
 
-/// The bins whose distance on the torus to a bin outside of the set is at least `distance`, and of each connected piece
-/// of the set (eight neighbors) those that come nearest to that. When fewer than `least` bins of the half remain, the
-/// distance is shortened until there are as many, or all.
+/// The bins whose distance on the torus to a bin outside of the set is at least `distance`; and where a connected piece
+/// of the set (eight neighbors) is narrower, its middle: bins with no neighbor that is farther from the outside by more
+/// than half a bin, and none within `distance` that is more than half as far again. When fewer than `least` bins of the
+/// half remain, the distance is shortened until there are as many, or all.
 std::vector<Pixel> erode_bins(const std::vector<Pixel>& bins, int side, double distance, std::size_t least);
 
 /// k-means (Lloyd's iterations from k-means++ seeds) in `parts` parts, none empty. parts <= bins.size().

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 namespace textonbench {
@@ -182,6 +183,23 @@ TEST(ErodeBins, KeepsWhatIsFarFromTheOutsideAndTheHeartOfSmallPieces) {
   EXPECT_LT(heart.size(), 8U);
   EXPECT_GE(erode_bins(bins, side, 100, 20).size(), 20U);
   EXPECT_EQ(erode_bins(bins, side, 100, 1000).size(), bins.size());
+}
+
+/// A ring that is narrower than the distance keeps its middle all around.
+TEST(ErodeBins, KeepsTheMiddleOfARing) {
+  constexpr int side = 64;
+  std::vector<Pixel> bins;
+  for (const Pixel& bin : PowerPlane(side).half()) {
+    if (std::abs(std::hypot(bin.x, bin.y) - 16) < 4) bins.push_back(bin);
+  }
+  const std::vector<Pixel> rest = erode_bins(bins, side, 20, 1);
+  int octants[8] = {};
+  for (const Pixel& bin : rest) {
+    EXPECT_NEAR(std::hypot(bin.x, bin.y), 16, 1.6);
+    const double turn = std::atan2(bin.y, bin.x) / std::numbers::pi + 0.5;  // of the right half: 0 to 1
+    ++octants[std::clamp(static_cast<int>(8 * turn), 0, 7)];
+  }
+  for (const int count : octants) EXPECT_GE(count, 3);
 }
 
 TEST(ClusterBins, FindsSeparateHeaps) {
