@@ -43,9 +43,9 @@ double filter_error(int channels, const Sharp& sharp, const Filtered& filtered) 
   points.reserve(std::size_t{count} * fine * fine);
   for (std::int64_t i = 0; i < count; ++i) {
     const WavePoint center = centers.emplace_back(WavePoint{i * 37 * pixel / 3, (i * i % 509) * 11 * pixel / 2});
-    for (int k = 0; k < fine * fine; ++k) {
+    for (std::int64_t k = 0; k < std::int64_t{fine} * fine; ++k) {
       points.push_back({center.x + (2 * (k % fine) + 1 - fine) * footprint * pixel / (2 * fine),
-                        center.y + (2 * std::int64_t{k / fine} + 1 - fine) * footprint * pixel / (2 * fine)});
+                        center.y + (2 * (k / fine) + 1 - fine) * footprint * pixel / (2 * fine)});
     }
   }
   const auto planes = static_cast<std::size_t>(channels);

@@ -89,7 +89,10 @@ std::array<double, count> point_times(const std::array<std::unique_ptr<Model>, c
   constexpr int turns = 15, side = 64;
   std::vector<Point2> points;
   points.reserve(std::size_t{side} * side);
-  for (int i = 0; i < side * side; ++i) points.push_back({i % side + 0.25, i / side + 0.5});
+  for (int i = 0; i < side * side; ++i) {
+    const int row = i / side;
+    points.push_back({i % side + 0.25, row + 0.5});
+  }
   std::vector<float> values(points.size() * Image::max_channels);
   std::array<std::vector<double>, count> times;
   for (std::uint64_t turn = 0; turn < turns; ++turn) {

@@ -36,10 +36,11 @@ class VerbatimCopy final : public SampleMetric {
     }
     RandomSequence numbers(Stream(seed).child("verbatim copy"));
     places_.reserve(pairs);
+    // The second pixel of a pair is to the right of the first.
+    const int columns = domain.size.width - patch, rows = domain.size.height - patch + 1;
     for (int i = 0; i < pairs; ++i) {
-      const auto x = static_cast<int>(numbers.below(static_cast<std::uint64_t>(domain.size.width - patch)));
-      places_.push_back(
-          {x, static_cast<int>(numbers.below(static_cast<std::uint64_t>(domain.size.height - patch + 1)))});
+      const auto x = static_cast<int>(numbers.below(static_cast<std::uint64_t>(columns)));
+      places_.push_back({x, static_cast<int>(numbers.below(static_cast<std::uint64_t>(rows)))});
     }
   }
 

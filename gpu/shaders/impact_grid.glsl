@@ -1,5 +1,7 @@
 // The impacts of methods/base/impact_grid.h, bit for bit, of cells relative to the one whose corner is the recipe's
 // base. PROCESS is one of the numbers below, KERNELS the number of kernels, THRESHOLDS that of poisson_thresholds().
+#include "philox.glsl"
+
 #define POISSON 0
 #define SIGNED_POISSON 1
 #define STRATIFIED 2
@@ -34,23 +36,6 @@ struct CellWords {
   uvec4 cell;
   uvec4 words;
 };
-
-uvec4 philox_block(uvec2 philox_key, uvec4 counter) {
-  for (int i = 0; i < 10; ++i) {
-    uint high_x, low_x, high_z, low_z;
-    umulExtended(0xD2511F53u, counter.x, high_x, low_x);
-    umulExtended(0xCD9E8D57u, counter.z, high_z, low_z);
-    counter = uvec4(high_z ^ counter.y ^ philox_key.x, low_z, high_x ^ counter.w ^ philox_key.y, low_x);
-    philox_key += uvec2(0x9E3779B9u, 0xBB67AE85u);
-  }
-  return counter;
-}
-
-uvec2 add_signed(uvec2 wide, int a) {
-  uint carry;
-  uint low = uaddCarry(wide.x, uint(a), carry);
-  return uvec2(low, wide.y + uint(a >> 31) + carry);
-}
 
 uvec4 block_of_cell(uvec4 cell, uint j) { return philox_block(uvec2(key.x ^ j, key.y), cell); }
 

@@ -9,6 +9,7 @@
 #include "methods/base/convolution.h"
 #include "methods/sparse/wave_points.h"
 #include "methods/sparse/wave_raster.h"
+#include "methods/sparse/wave_shader.h"
 #include "methods/sparse/wave_spectrum.h"
 
 namespace textonbench {
@@ -74,6 +75,13 @@ class Lrp final : public Model, public Gaussian, public Procedural {
     std::vector<float> all(3 * values);
     sum_waves(analysis_.field, seed, to_plane(points), true, all);
     std::copy(all.begin() + static_cast<std::ptrdiff_t>(values), all.end(), out.begin());
+  }
+
+  std::optional<ShaderRecipe> shader(const ShaderRequest& request) const override {
+    if (analysis_.fixed) {
+      throw std::invalid_argument("shader for lrp with a structure: it draws noise alone; expected structure = 0");
+    }
+    return wave_recipe(analysis_.field, analysis_.spectrum.mean(), request);
   }
 
   Footprint footprint(const Domain&) const override {

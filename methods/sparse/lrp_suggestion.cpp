@@ -36,8 +36,8 @@ using Numbers = std::array<Moments, 2 * octaves>;
 
 /// Of the differences of means over neighboring squares of 1, 2, 4, 8 and 16 pixels a side.
 Numbers numbers_of(const Image& u) {
-  const int width = u.width() + 1;
-  std::vector<double> sums(static_cast<std::size_t>(width) * static_cast<std::size_t>(u.height() + 1));
+  const int width = u.width() + 1, height = u.height() + 1;
+  std::vector<double> sums(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   const auto sum = [&](int x, int y) -> double& {
     return sums[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
   };
@@ -55,10 +55,11 @@ Numbers numbers_of(const Image& u) {
     for (int axis = 0; axis < 2; ++axis) {
       const int dx = axis == 0 ? side : 0, dy = side - dx;
       std::vector<double> values;
+      values.reserve(sums.size());
       for (int y = 0; y + dy + side <= u.height(); ++y) {
         for (int x = 0; x + dx + side <= u.width(); ++x) values.push_back(square(x + dx, y + dy) - square(x, y));
       }
-      all[static_cast<std::size_t>(2 * octave + axis)] = moments_of(values);
+      all[2 * static_cast<std::size_t>(octave) + static_cast<std::size_t>(axis)] = moments_of(values);
     }
   }
   return all;
@@ -112,6 +113,7 @@ StructureSuggestion suggest_structure(const Exemplar& exemplar, const WelchOptio
   }
   const Numbers own = numbers_of(block);
   std::vector<Numbers> of_random;
+  of_random.reserve(random.size());
   StructureSuggestion suggestion;
   for (const Image& image : random) of_random.push_back(numbers_of(image));
   for (int a = 0; a < draws; ++a) {

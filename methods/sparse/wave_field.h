@@ -77,6 +77,7 @@ class WaveLattice {
   WaveLattice(const WaveField& field, std::size_t layer, Seed seed);
 
   const WaveLayer& layer() const { return *layer_; }
+  std::uint64_t key() const { return key_; }
   /// Number of the lattice point nearest to a coordinate, and the coordinate of one, in 2^−22 pixel.
   std::int64_t nearest_x(std::int64_t x) const;
   std::int64_t nearest_y(std::int64_t y) const;
