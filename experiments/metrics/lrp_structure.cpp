@@ -217,7 +217,7 @@ std::optional<double> lrp_swapped_distortion_jump(const Model& model, const Targ
   // Each point where its block is taken from: the displacement is that of there.
   const int period = lrp->fixed->structure.period();
   std::vector<WavePoint> points = pairs_across_blocks(period, pixel >> 10);
-  const Stream stream = Stream(Seed{1}).child("lrp placement");
+  const Stream stream = placement_stream(Seed{1});
   for (WavePoint& point : points) {
     PlacedPoint places[4];
     place_at_random(stream, period, point, places);

@@ -1,6 +1,7 @@
 // Local random-phase noise (methods/sparse/wave_field.h): waves whose bins, colors and phases are the processor's bit for
 // bit. LAYERS is the number of layers, TERMS that of the window's coefficients, EVEN 1 where sums are divided by the root
-// of the squared windows' sum.
+// of the squared windows' sum. STRUCTURE is 1 where phases are fixed (methods/sparse/fixed_phases.h), and TURBULENT the
+// number of layers of each axis of turbulence, which follow those of the noise: their channel 0 counts.
 #include "plane.glsl"
 #include "philox.glsl"
 
@@ -101,7 +102,14 @@ void add_layer(WaveLayer layer, PlanePoint point, inout float values[CHANNELS]) 
   for (int c = 0; c < CHANNELS; ++c) values[c] += scale * sums[c];
 }
 
+#if STRUCTURE
+#include "fixed_phases.glsl"
+#endif
+
 void texture_at(PlanePoint point, mat2 footprint, PlaneBox tile, out float values[CHANNELS]) {
   for (int c = 0; c < CHANNELS; ++c) values[c] = start[c];
   for (uint l = 0u; l < uint(LAYERS); ++l) add_layer(layer_at(l), point, values);
+#if STRUCTURE
+  add_structure(point, values);
+#endif
 }

@@ -22,23 +22,19 @@ double variance_of(const WaveField& field) {
   return sum;
 }
 
-/// Adds σ (Σ_S |n_S| − mean) / deviation to one coordinate of the points. |n| of a normal n of variance v has the mean
-/// sqrt(2 v / π) and the variance (1 − 2 / π) v.
-void displace_axis(const FixedPhases& fixed, Seed seed, std::span<const WavePoint> points,
-                   std::int64_t WavePoint::*axis, std::span<WavePoint> displaced) {
+/// Adds scale (Σ_S |n_S| − mean) to one coordinate of the points.
+void displace_axis(const FixedPhases& fixed, Seed seed, std::span<const WavePoint> points, bool along_y,
+                   std::span<WavePoint> displaced) {
   std::vector<float> value(points.size()), sum(points.size());
-  double mean = 0, variance = 0;
   for (std::size_t layer = 0; layer < fixed.turbulent.size(); ++layer) {
-    const WaveField& field = fixed.turbulent[layer];
-    sum_waves(field, derive(seed, layer), points, false, value);
+    sum_waves(fixed.turbulent[layer], turbulence_seed(seed, along_y, layer), points, false, value);
     for (std::size_t i = 0; i < points.size(); ++i) sum[i] += std::abs(value[i]);
-    const double v = variance_of(field);
-    mean += std::sqrt(2 * v / std::numbers::pi);
-    variance += (1 - 2 / std::numbers::pi) * v;
   }
-  const double scale = fixed.turbulence / std::sqrt(variance) * static_cast<double>(std::int64_t{1} << plane_bits);
+  const FixedPhases::Displacement by = fixed.displacement();
+  const double scale = by.scale * static_cast<double>(std::int64_t{1} << plane_bits);
+  const auto axis = along_y ? &WavePoint::y : &WavePoint::x;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    displaced[i].*axis += static_cast<std::int64_t>(std::floor(scale * (static_cast<double>(sum[i]) - mean)));
+    displaced[i].*axis += static_cast<std::int64_t>(std::floor(scale * (static_cast<double>(sum[i]) - by.mean)));
   }
 }
 
@@ -83,15 +79,32 @@ int place_at_random(const Stream& stream, int period, const WavePoint& point, Pl
   return count;
 }
 
+Seed turbulence_seed(Seed seed, bool along_y, std::size_t layer) {
+  return derive(derive(seed, along_y ? "lrp turbulence y" : "lrp turbulence x"), layer);
+}
+
+Stream placement_stream(Seed seed) { return Stream(seed).child("lrp placement"); }
+
+/// |n| of a normal n of variance v has the mean sqrt(2 v / π) and the variance (1 − 2 / π) v.
+FixedPhases::Displacement FixedPhases::displacement() const {
+  double mean = 0, variance = 0;
+  for (const WaveField& field : turbulent) {
+    const double v = variance_of(field);
+    mean += std::sqrt(2 * v / std::numbers::pi);
+    variance += (1 - 2 / std::numbers::pi) * v;
+  }
+  return turbulent.empty() ? Displacement{} : Displacement{mean, turbulence / std::sqrt(variance)};
+}
+
 void FixedPhases::displace(Seed seed, std::span<const WavePoint> points, std::span<WavePoint> displaced) const {
   std::ranges::copy(points, displaced.begin());
   if (turbulence <= 0) return;
-  displace_axis(*this, derive(seed, "lrp turbulence x"), points, &WavePoint::x, displaced);
-  displace_axis(*this, derive(seed, "lrp turbulence y"), points, &WavePoint::y, displaced);
+  displace_axis(*this, seed, points, false, displaced);
+  displace_axis(*this, seed, points, true, displaced);
 }
 
 void FixedPhases::add(Seed seed, std::span<const WavePoint> points, std::span<float> out) const {
-  const Stream places_of_seed = Stream(seed).child("lrp placement");
+  const Stream places_of_seed = placement_stream(seed);
   const int period = structure.period();
   const auto channels = static_cast<std::size_t>(structure.image().channels());
   parallel_for(static_cast<int>((points.size() + chunk - 1) / chunk), [&](int task) {

@@ -36,8 +36,18 @@ struct FixedPhases {
   void displace(Seed seed, std::span<const WavePoint> points, std::span<WavePoint> displaced) const;
   /// out[c * points.size() + i] += n_R at points[i].
   void add(Seed seed, std::span<const WavePoint> points, std::span<float> out) const;
+  /// Mean of Σ |n_S|, and the pixels that a unit of it displaces. None without turbulence.
+  struct Displacement {
+    double mean = 0;
+    double scale = 0;
+  };
+  Displacement displacement() const;
   std::size_t bytes() const;
 };
+
+/// Where the numbers of turbulence along x and y and of random placement come from.
+Seed turbulence_seed(Seed seed, bool along_y, std::size_t layer);
+Stream placement_stream(Seed seed);
 
 /// A place where random placement looks the structure up.
 struct PlacedPoint {

@@ -78,10 +78,8 @@ class Lrp final : public Model, public Gaussian, public Procedural {
   }
 
   std::optional<ShaderRecipe> shader(const ShaderRequest& request) const override {
-    if (analysis_.fixed) {
-      throw std::invalid_argument("shader for lrp with a structure: it draws noise alone; expected structure = 0");
-    }
-    return wave_recipe(analysis_.field, analysis_.spectrum.mean(), request);
+    const FixedPhases* fixed = analysis_.fixed ? &*analysis_.fixed : nullptr;
+    return wave_recipe(analysis_.field, fixed, analysis_.spectrum.mean(), request);
   }
 
   Footprint footprint(const Domain&) const override {

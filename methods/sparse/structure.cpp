@@ -142,6 +142,11 @@ PaddedWaves Structure::waves_of(std::size_t block) const {
           colors_.data() + block * 2 * static_cast<std::size_t>(padded_ * image_.channels())};
 }
 
+PaddedWaves Structure::block(int x, int y) const {
+  return waves_of(static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width() / side_) +
+                  static_cast<std::size_t>(x));
+}
+
 Structure Structure::filtered(double footprint, bool mip) const {
   const int whole = image_.width();
   int side = side_;

@@ -53,6 +53,11 @@ class Structure {
   /// Cosines that are evaluated at a point.
   int cosines_at_point() const { return (is_cut() ? 4 : 1) * cosines_; }
 
+  /// The cosines of block (x, y), its phases being zero at its first sample.
+  PaddedWaves block(int x, int y) const;
+  /// Of the cosines of a block, pixels.
+  int block_period() const { return 1 << period_bits_; }
+
   /// The structure seen through square pixels of a side: cosines by box_response() (wave_filter.h). A block has its own
   /// zero frequency, which no clamping removes: blocks that are smaller than half a footprint give way to larger ones
   /// of one mean each, as of a mip map, unless `mip` is false.

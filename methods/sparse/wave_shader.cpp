@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace textonbench {
 namespace {
@@ -49,45 +51,139 @@ void add_wide(std::vector<std::uint32_t>& words, std::uint64_t v) {
 std::uint32_t coarse_part(std::int64_t at) { return static_cast<std::uint32_t>(at >> fine_bits); }
 std::uint32_t fine_part(std::int64_t at) { return static_cast<std::uint32_t>(at & ((1 << fine_bits) - 1)); }
 
-/// The shader's WaveLayer.
-std::vector<std::uint32_t> header_of(const WaveLattice& lattice, std::int64_t base_x, std::int64_t base_y,
-                                     std::size_t first, std::size_t bins) {
-  std::vector<std::uint32_t> words;
-  const std::int64_t cell_x = lattice.nearest_x(base_x), cell_y = lattice.nearest_y(base_y);
-  const std::int64_t center_x = lattice.center_x(cell_x) - base_x, center_y = lattice.center_y(cell_y) - base_y;
-  add_wide(words, lattice.key());
-  add_wide(words, static_cast<std::uint64_t>(cell_x));
-  add_wide(words, static_cast<std::uint64_t>(cell_y));
-  for (const std::uint32_t word :
-       {coarse_part(center_x), coarse_part(center_y), fine_part(center_x), fine_part(center_y),
-        coarse_part(lattice.layer().spacing), fine_part(lattice.layer().spacing),
-        static_cast<std::uint32_t>(lattice.layer().waves()), static_cast<std::uint32_t>(lattice.layer().colors),
-        static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(bins)}) {
-    words.push_back(word);
-  }
-  return words;
+/// kx and ky in 16 bits.
+std::uint32_t packed(std::int32_t kx, std::int32_t ky) {
+  return (static_cast<std::uint32_t>(kx) & 0xFFFFU) | (static_cast<std::uint32_t>(ky) << 16U);
 }
 
-/// Of each bin kx and ky in 16 bits, thresholds of its colors but the last, and its colors of the first `channels`.
-void add_bins(const WaveLayer& layer, int field_channels, int channels, std::vector<std::uint32_t>& words) {
-  const auto colors = static_cast<std::size_t>(layer.colors), stride = static_cast<std::size_t>(field_channels);
-  for (std::size_t bin = 0; bin < layer.bins.size(); ++bin) {
-    const auto low = static_cast<std::uint32_t>(layer.bins[bin].kx) & 0xFFFFU;
-    words.push_back(low | (static_cast<std::uint32_t>(layer.bins[bin].ky) << 16U));
-    for (std::size_t v = 0; v + 1 < colors; ++v) words.push_back(layer.chance[bin * colors + v]);
-    for (std::size_t v = 0; v < colors; ++v) {
-      for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c) {
-        const std::complex<float> color = layer.color[(bin * colors + v) * stride + c];
-        words.push_back(std::bit_cast<std::uint32_t>(color.real()));
-        words.push_back(std::bit_cast<std::uint32_t>(color.imag()));
+/// The buffer "tables".
+class TableWriter {
+ public:
+  TableWriter(int channels, std::size_t layers, std::int64_t base_x, std::int64_t base_y)
+      : channels_(channels), base_x_(base_x), base_y_(base_y), body_(layer_words * layers) {}
+
+  int channels() const { return channels_; }
+  std::int64_t base_x() const { return base_x_; }
+  std::int64_t base_y() const { return base_y_; }
+  /// Place of the next word.
+  std::size_t next() const { return body_ + words_.size(); }
+  void add(std::uint32_t word) { words_.push_back(word); }
+  void add(float v) { add(std::bit_cast<std::uint32_t>(v)); }
+  void count_fetches(double fetches) { fetches_ += fetches; }
+  /// Words that a point reads.
+  double fetches() const { return fetches_; }
+
+  void add_layer(const WaveField& field, std::size_t number, Seed seed) {
+    const WaveLayer& layer = field.layers[number];
+    const std::size_t first = next();
+    words_.insert(words_.end(), layer.first.begin(), layer.first.end());
+    add_header(WaveLattice(field, number, seed), first, next());
+    add_bins(layer, field.channels);
+    count_fetches(9.0 * layer.waves() * (2 + layer.colors + 2.0 * channels_));
+  }
+
+  std::vector<std::uint32_t> take() {
+    headers_.insert(headers_.end(), words_.begin(), words_.end());
+    return std::move(headers_);
+  }
+
+ private:
+  /// The shader's WaveLayer.
+  void add_header(const WaveLattice& lattice, std::size_t first, std::size_t bins) {
+    const std::int64_t cell_x = lattice.nearest_x(base_x_), cell_y = lattice.nearest_y(base_y_);
+    const std::int64_t center_x = lattice.center_x(cell_x) - base_x_, center_y = lattice.center_y(cell_y) - base_y_;
+    add_wide(headers_, lattice.key());
+    add_wide(headers_, static_cast<std::uint64_t>(cell_x));
+    add_wide(headers_, static_cast<std::uint64_t>(cell_y));
+    const WaveLayer& layer = lattice.layer();
+    for (const std::uint32_t word :
+         {coarse_part(center_x), coarse_part(center_y), fine_part(center_x), fine_part(center_y),
+          coarse_part(layer.spacing), fine_part(layer.spacing), static_cast<std::uint32_t>(layer.waves()),
+          static_cast<std::uint32_t>(layer.colors), static_cast<std::uint32_t>(first),
+          static_cast<std::uint32_t>(bins)}) {
+      headers_.push_back(word);
+    }
+  }
+
+  /// Of each bin its number, thresholds of its colors but the last, and its colors of the first `channels`.
+  void add_bins(const WaveLayer& layer, int field_channels) {
+    const auto colors = static_cast<std::size_t>(layer.colors), stride = static_cast<std::size_t>(field_channels);
+    for (std::size_t bin = 0; bin < layer.bins.size(); ++bin) {
+      add(packed(layer.bins[bin].kx, layer.bins[bin].ky));
+      for (std::size_t v = 0; v + 1 < colors; ++v) add(layer.chance[bin * colors + v]);
+      for (std::size_t v = 0; v < colors; ++v) {
+        for (std::size_t c = 0; c < static_cast<std::size_t>(channels_); ++c) {
+          const std::complex<float> color = layer.color[(bin * colors + v) * stride + c];
+          add(color.real());
+          add(color.imag());
+        }
       }
     }
   }
+
+  int channels_;
+  std::int64_t base_x_, base_y_;
+  std::size_t body_;
+  std::vector<std::uint32_t> headers_, words_;
+  double fetches_ = 0;
+};
+
+/// Layers of one channel as those of a field: its other channels are zero.
+std::vector<WaveField> as_channel_0(std::vector<WaveField> fields, int channels) {
+  for (WaveField& field : fields) {
+    WaveLayer& layer = field.layers.front();
+    std::vector<std::complex<float>> color(layer.color.size() * static_cast<std::size_t>(channels));
+    for (std::size_t i = 0; i < layer.color.size(); ++i) color[i * static_cast<std::size_t>(channels)] = layer.color[i];
+    layer.color = std::move(color);
+    field.channels = channels;
+  }
+  return fields;
+}
+
+std::int32_t remainder(std::int64_t a, std::int64_t b) { return static_cast<std::int32_t>(((a % b) + b) % b); }
+
+/// What fixed_phases.glsl reads.
+void add_structure(const FixedPhases& fixed, Seed seed, TableWriter& table, ShaderRecipe& recipe) {
+  const Structure& structure = fixed.structure;
+  const auto set = [&](const char* name, ShaderValue value) { recipe.uniforms.emplace_back(name, std::move(value)); };
+  set("structure_first", static_cast<std::uint32_t>(table.next()));
+  set("structure_cosines", std::int32_t{structure.cosines()});
+  set("structure_period", std::int32_t{structure.period()});
+  set("block_side", std::int32_t{structure.block_side()});
+  set("block_period", std::int32_t{structure.block_period()});
+  const int across = structure.period() / structure.block_side();
+  for (int i = 0; i < across * across; ++i) {
+    const PaddedWaves waves = structure.block(i % across, i / across);
+    for (int j = 0; j < structure.cosines(); ++j) {
+      table.add(packed(waves.kx[j], waves.ky[j]));
+      for (int c = 0; c < table.channels(); ++c) {
+        const float* color = waves.color + std::ptrdiff_t{2} * c * waves.padded + j;
+        table.add(color[0]);
+        table.add(color[waves.padded]);
+      }
+    }
+  }
+  table.count_fetches(structure.cosines_at_point() * (1 + 2.0 * table.channels()));
+  const std::int64_t x = table.base_x() >> plane_bits, y = table.base_y() >> plane_bits;
+  const int half = structure.period() / 2;
+  set("structure_base", std::array{remainder(x, structure.period()), remainder(y, structure.period())});
+  const FixedPhases::Displacement by = fixed.displacement();
+  set("turbulence_scale", static_cast<float>(by.scale));
+  set("turbulence_mean", static_cast<float>(by.mean));
+  set("placement", std::int32_t{fixed.placement ? 1 : 0});
+  std::vector<std::uint32_t> key, block;
+  add_wide(key, placement_stream(seed).key());
+  add_wide(block, static_cast<std::uint64_t>((x - remainder(x, half)) / half));
+  add_wide(block, static_cast<std::uint64_t>((y - remainder(y, half)) / half));
+  set("placement_key", std::array{key[0], key[1]});
+  set("placement_base", std::array{block[0], block[1], block[2], block[3]});
+  set("placement_start", std::array{remainder(x, half), remainder(y, half)});
 }
 
 }  // namespace
 
-ShaderRecipe wave_recipe(const WaveField& field, std::span<const double> mean, const ShaderRequest& request) {
+ShaderRecipe wave_recipe(const WaveField& field, const FixedPhases* fixed, std::span<const double> mean,
+                         const ShaderRequest& request) {
   require_shader_limits(field, request);
   ShaderRecipe recipe;
   recipe.shader = "local_random_phase";
@@ -97,21 +193,20 @@ ShaderRecipe wave_recipe(const WaveField& field, std::span<const double> mean, c
   const auto base_x = static_cast<std::int64_t>(recipe.base.x() * pixel);
   const auto base_y = static_cast<std::int64_t>(recipe.base.y() * pixel);
 
-  std::vector<std::uint32_t> headers, words;
-  const std::size_t offset = layer_words * field.layers.size();
-  for (std::size_t l = 0; l < field.layers.size(); ++l) {
-    const WaveLayer& layer = field.layers[l];
-    const std::size_t first = offset + words.size();
-    words.insert(words.end(), layer.first.begin(), layer.first.end());
-    const std::vector<std::uint32_t> header =
-        header_of(WaveLattice(field, l, request.seed), base_x, base_y, first, offset + words.size());
-    headers.insert(headers.end(), header.begin(), header.end());
-    add_bins(layer, field.channels, recipe.channels, words);
-    const double of_wave = 2 + layer.colors + 2.0 * recipe.channels;
-    recipe.useful_fetches += 9 * layer.waves() * of_wave;
+  std::vector<WaveField> turbulent;
+  if (fixed != nullptr) turbulent = as_channel_0(fixed->turbulent, field.channels);
+  TableWriter table(recipe.channels, field.layers.size() + 2 * turbulent.size(), base_x, base_y);
+  for (std::size_t l = 0; l < field.layers.size(); ++l) table.add_layer(field, l, request.seed);
+  for (const bool along_y : {false, true}) {
+    for (std::size_t l = 0; l < turbulent.size(); ++l) {
+      table.add_layer(turbulent[l], 0, turbulence_seed(request.seed, along_y, l));
+    }
   }
-  headers.insert(headers.end(), words.begin(), words.end());
-  recipe.words.push_back({"tables", std::move(headers)});
+  if (fixed != nullptr) add_structure(*fixed, request.seed, table, recipe);
+  recipe.useful_fetches = table.fetches();
+  recipe.words.push_back({"tables", table.take()});
+  recipe.defines.emplace_back("STRUCTURE", fixed != nullptr ? "1" : "0");
+  recipe.defines.emplace_back("TURBULENT", std::to_string(turbulent.size()));
 
   const auto& polynomial = lrp_window_polynomial(field.window);
   recipe.uniforms.emplace_back("window_terms", std::vector<float>(polynomial.begin(), polynomial.end()));

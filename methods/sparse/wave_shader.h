@@ -5,6 +5,7 @@
 #include <span>
 
 #include "methods/base/shader_recipe.h"
+#include "methods/sparse/fixed_phases.h"
 #include "methods/sparse/wave_field.h"
 
 namespace textonbench {
@@ -13,8 +14,10 @@ namespace textonbench {
 /// bins with their thresholds and colors. The base is the whole pixel nearest to request.near, and useful_fetches are
 /// the words that a point reads.
 ///
-/// Throws std::invalid_argument for a filter or texels of 16 bits, which there are none of, more than 8 channels, a
-/// torus of more than 1024 pixels, windows wider than 2^18 pixels and a place beyond 2^40 pixels from the origin.
-ShaderRecipe wave_recipe(const WaveField& field, std::span<const double> mean, const ShaderRequest& request);
+/// `fixed` is null where there is no structure. Throws std::invalid_argument for a filter or texels of 16 bits, which
+/// there are none of, more than 8 channels, a torus of more than 1024 pixels, windows wider than 2^18 pixels and a
+/// place beyond 2^40 pixels from the origin.
+ShaderRecipe wave_recipe(const WaveField& field, const FixedPhases* fixed, std::span<const double> mean,
+                         const ShaderRequest& request);
 
 }  // namespace textonbench

@@ -52,7 +52,10 @@ class LrpParity : public testing::TestWithParam<std::tuple<ContextKind, ShaderPa
                     expected.row(c, y).begin());
       }
     }
-    const Eigen::MatrixXd covariance = color_covariance(model->gaussian()->spectrum({128, 128}));
+    LrpOptions noise = options;
+    noise.fixed = {};
+    const auto gaussian = make_lrp(analyze_lrp(test_exemplar({72, 70}, channels), noise, Seed{2}));
+    const Eigen::MatrixXd covariance = color_covariance(gaussian->gaussian()->spectrum({128, 128}));
     std::vector<double> deviations;
     for (int c = 0; c < frame.channels(); ++c) deviations.push_back(std::sqrt(covariance(c, c)));
     return largest_difference(frame, expected, deviations);
@@ -84,6 +87,25 @@ TEST_P(LrpParity, OfAllOptions) {
   EXPECT_LE(difference(options, 1, {}), bound);
 }
 
+TEST_P(LrpParity, OfStructures) {
+  for (const bool reduced : {true, false}) {
+    LrpOptions options;
+    options.fixed = {.ratio = 0.4, .reduced = reduced};
+    EXPECT_LE(difference(options, 3, {}), bound);
+    options.fixed.placement = true;
+    EXPECT_LE(difference(options, 1, {{0x1p35 + 0.625, -0x1p35}, 0.37}), bound);
+    options.fixed.turbulence = 3;
+    // Turbulence is rounded to 2^−14 pixel or so, and the structure changes by about a deviation over a pixel.
+    EXPECT_LE(difference(options, 3, {{-77, -1000.25}, 3}), 1e-3);
+  }
+  LrpOptions pixels;
+  pixels.strata = {.strata = 1, .cosines = 2};
+  pixels.fixed = {.ratio = 0.6};
+  EXPECT_LE(difference(pixels, 3, {}), bound) << "blocks of a pixel or two";
+  pixels.fixed = {.ratio = 1};
+  EXPECT_LE(difference(pixels, 3, {}), bound) << "no noise at all";
+}
+
 INSTANTIATE_TEST_SUITE_P(All, LrpParity,
                          testing::Combine(testing::Values(ContextKind::egl, ContextKind::osmesa),
                                           testing::Values(ShaderPath::fragment, ShaderPath::compute)));
@@ -96,9 +118,6 @@ TEST(LrpShader, TellsWhatItCannotServe) {
       static_cast<void>(make_lrp(analyze_lrp(test_exemplar({72, 70}, 1), options, Seed{2}))->shader(request));
     };
   };
-  LrpOptions fixed;
-  fixed.fixed.ratio = 0.2;
-  EXPECT_THAT(recipe(fixed, {}), ThrowsMessage<std::invalid_argument>(HasSubstr("expected structure = 0")));
   EXPECT_THAT(recipe({}, {.filter = ShaderFilter::mipmap}),
               ThrowsMessage<std::invalid_argument>(HasSubstr("expected filter none")));
   EXPECT_THAT(recipe({}, {.half_float = true}), ThrowsMessage<std::invalid_argument>(HasSubstr("it has no texels")));
