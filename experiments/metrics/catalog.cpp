@@ -36,7 +36,7 @@ constexpr std::array general_metrics{
                 .source = "model_error",
                 .of_model = rme},
     MetricEntry{.name = "smoothed_rme",
-                .title = "Smoothed model error",
+                .title = "Smoothed RME",
                 .unit = "1",
                 .level = MetricLevel::model,
                 .better = Better::lower,
