@@ -48,7 +48,8 @@ class PeakError final : public SampleMetric {
         const auto here = sample.row(c, y), there = sample.row(c, y + lag_.y);
         for (int x = left; x < right; ++x) {
           const double a = static_cast<double>(here[static_cast<std::size_t>(x)]) - mean;
-          const double b = static_cast<double>(there[static_cast<std::size_t>(x) + static_cast<std::size_t>(lag_.x)]) - mean;
+          const double b =
+              static_cast<double>(there[static_cast<std::size_t>(x) + static_cast<std::size_t>(lag_.x)]) - mean;
           products += a * b;
           squares += (a * a + b * b) / 2;
         }

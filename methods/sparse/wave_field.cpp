@@ -10,6 +10,28 @@ std::int64_t floor_divide(std::int64_t a, std::int64_t b) { return a / b - (a % 
 
 std::int64_t part_of(std::int64_t length, std::uint32_t word) { return (length * (word >> 8U)) >> 24U; }
 
+/// The waves of a cell by its words, two of each.
+__attribute__((target_clones("default", "avx2", "avx512f"))) void make_waves(
+    const WaveLayer& layer, const std::uint32_t* __restrict words, std::int32_t* __restrict kx,
+    std::int32_t* __restrict ky, std::uint32_t* __restrict phase, std::uint32_t* __restrict color) {
+  const auto colors = static_cast<std::uint32_t>(layer.colors);
+  const std::uint32_t* first = layer.first.data();
+  const WaveBin* bins = layer.bins.data();
+  const std::uint32_t* chance = layer.chance.data();
+  const int count = layer.waves();
+  for (std::ptrdiff_t j = 0; j < count; ++j) {
+    const std::uint64_t place = std::uint64_t{words[2 * j]} * (first[j + 1] - first[j]);
+    const std::uint32_t bin = first[j] + static_cast<std::uint32_t>(place >> 32U);
+    const auto rest = static_cast<std::uint32_t>(place);
+    std::uint32_t entry = bin * colors;
+    for (std::uint32_t c = 1; c < colors; ++c) entry += rest >= chance[bin * colors + c - 1] ? 1 : 0;
+    kx[j] = bins[bin].kx;
+    ky[j] = bins[bin].ky;
+    phase[j] = words[2 * j + 1];
+    color[j] = entry;
+  }
+}
+
 }  // namespace
 
 std::size_t WaveLayer::bytes() const {
@@ -34,44 +56,49 @@ std::int64_t WaveLattice::nearest_y(std::int64_t y) const {
   return floor_divide(y - corner_y_ + layer_->spacing / 2, layer_->spacing);
 }
 
-void WaveLattice::draw(std::int64_t cx, std::int64_t cy, std::span<Wave> waves) const {
+void WaveLattice::draw(std::int64_t cx, std::int64_t cy, std::size_t cells, DrawnWaves& drawn) const {
   const auto count = static_cast<std::size_t>(layer_->waves());
   const std::size_t blocks = (count + 1) / 2;
-  const std::size_t cells = waves.size() / count;
-  // So many blocks at a time; `cell` and `block` are those of the first one.
-  constexpr std::size_t chunk = 64;
-  std::uint64_t keys[chunk], indices[chunk];
-  std::array<std::uint32_t, 4> words[chunk];
+  drawn.words.resize(cells * blocks);
   std::size_t cell = 0, block = 0;
-  for (std::size_t left = cells * blocks; left > 0;) {
-    const std::size_t here = std::min(chunk, left);
-    std::size_t next_cell = cell, next_block = block;
+  for (std::size_t done = 0; done < drawn.words.size();) {
+    constexpr std::size_t at_once = 64;
+    std::uint64_t keys[at_once], indices[at_once];
+    const std::size_t here = std::min(at_once, drawn.words.size() - done);
     for (std::size_t i = 0; i < here; ++i) {
-      keys[i] = key_ ^ next_block;
-      indices[i] = static_cast<std::uint64_t>(cx) + next_cell;
-      if (++next_block == blocks) next_block = 0, ++next_cell;
-    }
-    philox_blocks({keys, here}, static_cast<std::uint64_t>(cy), {indices, here}, {words, here});
-    for (std::size_t i = 0; i < here; ++i) {
-      const std::size_t j = 2 * block;
-      Wave* wave = &waves[cell * count + j];
-      wave[0] = make_wave(j, words[i][0], words[i][1]);
-      if (j + 1 < count) wave[1] = make_wave(j + 1, words[i][2], words[i][3]);
+      keys[i] = key_ ^ block;
+      indices[i] = static_cast<std::uint64_t>(cx) + cell;
       if (++block == blocks) block = 0, ++cell;
     }
-    left -= here;
+    philox_blocks({keys, here}, static_cast<std::uint64_t>(cy), {indices, here},
+                  std::span(drawn.words).subspan(done, here));
+    done += here;
+  }
+  const std::size_t padded = (count + 7) / 8 * 8;
+  const std::size_t places = cells * padded;
+  if (drawn.padded != padded || drawn.kx.size() < places) {
+    drawn.padded = padded;
+    drawn.kx.assign(places, 0);
+    drawn.ky.assign(places, 0);
+    drawn.phase.assign(places, 0);
+    drawn.color.assign(places, 0);
+  }
+  for (std::size_t i = 0; i < cells; ++i) {
+    make_waves(*layer_, drawn.words[i * blocks].data(), drawn.kx.data() + i * padded, drawn.ky.data() + i * padded,
+               drawn.phase.data() + i * padded, drawn.color.data() + i * padded);
   }
 }
 
-Wave WaveLattice::make_wave(std::size_t j, std::uint32_t u, std::uint32_t v) const {
-  const std::uint32_t first = layer_->first[j];
-  const std::uint64_t place = std::uint64_t{u} * (layer_->first[j + 1] - first);
-  const std::size_t bin = first + static_cast<std::size_t>(place >> 32U);
-  const auto rest = static_cast<std::uint32_t>(place);
-  const auto colors = static_cast<std::size_t>(layer_->colors);
-  std::size_t entry = bin * colors;
-  for (std::size_t c = 1; c < colors; ++c) entry += rest >= layer_->chance[bin * colors + c - 1] ? 1 : 0;
-  return {layer_->bins[bin], v, layer_->color.data() + entry * static_cast<std::size_t>(channels_)};
+void WaveLattice::draw(std::int64_t cx, std::int64_t cy, std::span<Wave> waves) const {
+  const auto count = static_cast<std::size_t>(layer_->waves());
+  DrawnWaves drawn;
+  draw(cx, cy, waves.size() / count, drawn);
+  for (std::size_t i = 0; i < waves.size(); ++i) {
+    const std::size_t from = i / count * drawn.padded + i % count;
+    waves[i] = {{drawn.kx[from], drawn.ky[from]},
+                drawn.phase[from],
+                layer_->color.data() + std::size_t{drawn.color[from]} * static_cast<std::size_t>(channels_)};
+  }
 }
 
 }  // namespace textonbench

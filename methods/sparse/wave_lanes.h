@@ -30,9 +30,10 @@ template <class Lanes>
                                                  typename Lanes::Floats& sine) {
   using Floats = typename Lanes::Floats;
   const typename Lanes::Words quarter = (turn + 0x20000000U) >> 30U;
-  const auto rest = reinterpret_cast<const typename Lanes::Ints&>(turn) -
-                    reinterpret_cast<const typename Lanes::Ints&>(quarter) * (1 << 30);
-  const Floats x = __builtin_convertvector(rest, Floats) * 1.46291807926715968e-9F;
+  // In [−1/8, 1/8) turn once its words are read as signed.
+  const typename Lanes::Words rest = turn - (quarter << 30U);
+  const Floats x =
+      __builtin_convertvector(reinterpret_cast<const typename Lanes::Ints&>(rest), Floats) * 1.46291807926715968e-9F;
   const Floats x2 = x * x;
   const Floats s = x + x * x2 * (-1.6666654611e-1F + x2 * (8.3321608736e-3F + x2 * -1.9515295891e-4F));
   const Floats c =

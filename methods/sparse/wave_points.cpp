@@ -53,7 +53,6 @@ class CellStore {
       : lattice_(lattice),
         channels_(field.channels),
         padded_((lattice.layer().waves() + lanes - 1) / lanes * lanes),
-        waves_(static_cast<std::size_t>(lattice.layer().waves())),
         places_(slots),
         integers_(static_cast<std::size_t>(3 * padded_) * slots),
         colors_(static_cast<std::size_t>(2 * channels_ * padded_) * slots) {}
@@ -66,17 +65,21 @@ class CellStore {
     Place& place = places_[slot];
     if (!place.drawn || place.x != cx || place.y != cy) {
       place = {cx, cy, true};
-      lattice_.draw(cx, cy, waves_);
+      lattice_.draw(cx, cy, 1, drawn_);
       std::fill_n(kx, 3 * padded_, 0);
       std::fill_n(color, 2 * channels_ * padded_, 0.0F);
-      for (std::size_t j = 0; j < waves_.size(); ++j) {
-        kx[j] = waves_[j].bin.kx;
-        kx[padded_ + static_cast<std::ptrdiff_t>(j)] = waves_[j].bin.ky;
-        phase[j] = waves_[j].phase;
+      const WaveLayer& layer = lattice_.layer();
+      const auto waves = static_cast<std::size_t>(layer.waves());
+      std::copy_n(drawn_.kx.begin(), waves, kx);
+      std::copy_n(drawn_.ky.begin(), waves, kx + padded_);
+      std::copy_n(drawn_.phase.begin(), waves, phase);
+      for (std::size_t j = 0; j < waves; ++j) {
+        const std::complex<float>* from =
+            layer.color.data() + std::size_t{drawn_.color[j]} * static_cast<std::size_t>(channels_);
         float* to = color + j;
         for (int c = 0; c < channels_; ++c, to += std::ptrdiff_t{2} * padded_) {
-          to[0] = waves_[j].color[c].real();
-          to[padded_] = waves_[j].color[c].imag();
+          to[0] = from[c].real();
+          to[padded_] = from[c].imag();
         }
       }
     }
@@ -92,7 +95,7 @@ class CellStore {
   const WaveLattice& lattice_;
   int channels_;
   int padded_;
-  std::vector<Wave> waves_;
+  DrawnWaves drawn_;
   std::vector<Place> places_;
   AlignedBuffer<std::int32_t> integers_;
   AlignedBuffer<float> colors_;

@@ -5,7 +5,9 @@
 //   Re(z exp(±iβ)) = Re z cos β ∓ Im z sin β,
 //
 // so that the waves of a cell are two matrix products of columns x waves x rows, and two rows as far above as below any
-// middle share both. That leaves one multiplication and addition for each pixel, wave and channel.
+// middle share both. That leaves one multiplication and addition for each pixel, wave and channel. Bins are whole, so
+// exp(2πi k_x x / T) of all columns of a tile, from its first one, is a table of few rows, and so is β: a wave takes
+// one cosine and sine a cell.
 #pragma once
 
 #include "methods/base/image.h"

@@ -92,8 +92,11 @@ TEST(SumWaves, CountsNineWindowsAndNineTimesTheCosines) {
 }
 
 TEST(AddWaves, RasterOfAnyStepIsThePointsThemselves) {
-  for (const int channels : {1, 3, 8}) {
-    const WaveField field = small_analysis(channels).field;
+  // Cells narrower than the steps, and wider than a tile.
+  for (const auto& [channels, spacing] : {std::pair{1, 1.0}, {3, 1.0}, {8, 1.0}, {3, 4.0}, {3, 30.0}}) {
+    LrpOptions options = small_options();
+    options.strata.spacing = spacing;
+    const WaveField field = small_analysis(channels, options).field;
     const double sigma = deviation(field);
     for (const WaveRaster& raster : {WaveRaster{0, 0, 1}, WaveRaster{-33.25, 17.5, 0.37}, WaveRaster{5, -400, 3},
                                      WaveRaster{1e11, -1e11, 1}, WaveRaster{2, 3, 100}}) {
@@ -262,12 +265,13 @@ TEST(Lrp, LimitsAreGaborKernelsAndFourierSeries) {
   // The nine cells' series, with the weights of the middle.
   for (std::size_t i = 0; i < points.size(); i += 2) {
     double expected = 0;
+    const std::size_t pixel = i / 2;
     for (int cell_y = -1; cell_y <= 1; ++cell_y) {
       for (int cell_x = -1; cell_x <= 1; ++cell_x) {
         Wave waves[2];
         lattice.draw(cell_x, cell_y, waves);
         for (const Wave& wave : waves) {
-          const double turns = wave.phase * 0x1p-32 + wave.bin.kx * static_cast<double>(i / 2) / 64 -
+          const double turns = wave.phase * 0x1p-32 + wave.bin.kx * static_cast<double>(pixel) / 64 -
                                (wave.bin.kx * cell_x + wave.bin.ky * cell_y) * 1e6 / 64;
           expected += lrp_window(LrpWindow::bessel, std::hypot(cell_x, cell_y)) *
                       static_cast<double>(wave.color->real()) * std::cos(2 * std::numbers::pi * turns);
