@@ -37,13 +37,13 @@ double estimate_error(const WelchSpectrum& estimate, const CrossSpectrum& known)
 /// Both write the values of `channels` channels at points, channel after channel.
 template <class Sharp, class Filtered>
 double filter_error(int channels, const Sharp& sharp, const Filtered& filtered) {
-  constexpr int count = 256, fine = 2 * footprint;
+  constexpr std::int64_t count = 256, fine = std::int64_t{2} * footprint;
   std::vector<WavePoint> centers, points;
   centers.reserve(count);
-  points.reserve(std::size_t{count} * fine * fine);
+  points.reserve(static_cast<std::size_t>(count * fine * fine));
   for (std::int64_t i = 0; i < count; ++i) {
     const WavePoint center = centers.emplace_back(WavePoint{i * 37 * pixel / 3, (i * i % 509) * 11 * pixel / 2});
-    for (std::int64_t k = 0; k < std::int64_t{fine} * fine; ++k) {
+    for (std::int64_t k = 0; k < fine * fine; ++k) {
       points.push_back({center.x + (2 * (k % fine) + 1 - fine) * footprint * pixel / (2 * fine),
                         center.y + (2 * (k / fine) + 1 - fine) * footprint * pixel / (2 * fine)});
     }
@@ -53,7 +53,7 @@ double filter_error(int channels, const Sharp& sharp, const Filtered& filtered) 
   sharp(points, fine_values);
   filtered(centers, values);
   double error = 0, power = 0;
-  constexpr std::size_t each = std::size_t{fine} * fine;
+  constexpr auto each = static_cast<std::size_t>(fine * fine);
   for (std::size_t i = 0; i < values.size(); ++i) {
     double mean = 0;
     for (const float v : std::span(fine_values).subspan(i * each, each)) {

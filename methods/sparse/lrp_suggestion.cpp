@@ -32,7 +32,7 @@ Moments moments_of(const std::vector<double>& values) {
 }
 
 constexpr int octaves = 5;
-using Numbers = std::array<Moments, 2 * octaves>;
+using Numbers = std::array<Moments, std::size_t{2} * octaves>;
 
 /// Of the differences of means over neighboring squares of 1, 2, 4, 8 and 16 pixels a side.
 Numbers numbers_of(const Image& u) {

@@ -211,9 +211,8 @@ ShaderRecipe wave_recipe(const WaveField& field, const FixedPhases* fixed, std::
   const auto& polynomial = lrp_window_polynomial(field.window);
   recipe.uniforms.emplace_back("window_terms", std::vector<float>(polynomial.begin(), polynomial.end()));
   recipe.uniforms.emplace_back("turn_shift", static_cast<std::int32_t>(most_side_bits - field.side_bits));
-  std::vector<float> start;
-  for (int c = 0; c < recipe.channels; ++c) start.push_back(static_cast<float>(mean[static_cast<std::size_t>(c)]));
-  recipe.uniforms.emplace_back("start", std::move(start));
+  const auto drawn = mean.first(static_cast<std::size_t>(recipe.channels));
+  recipe.uniforms.emplace_back("start", std::vector<float>(drawn.begin(), drawn.end()));
   recipe.defines.emplace_back("LAYERS", std::to_string(field.layers.size()));
   recipe.defines.emplace_back("TERMS", std::to_string(polynomial.size()));
   recipe.defines.emplace_back("EVEN", field.even_variance ? "1" : "0");

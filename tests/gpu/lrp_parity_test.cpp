@@ -56,8 +56,8 @@ class LrpParity : public testing::TestWithParam<std::tuple<ContextKind, ShaderPa
     noise.fixed = {};
     const auto gaussian = make_lrp(analyze_lrp(test_exemplar({72, 70}, channels), noise, Seed{2}));
     const Eigen::MatrixXd covariance = color_covariance(gaussian->gaussian()->spectrum({128, 128}));
-    std::vector<double> deviations;
-    for (int c = 0; c < frame.channels(); ++c) deviations.push_back(std::sqrt(covariance(c, c)));
+    std::vector<double> deviations(static_cast<std::size_t>(frame.channels()));
+    for (int c = 0; c < frame.channels(); ++c) deviations[static_cast<std::size_t>(c)] = std::sqrt(covariance(c, c));
     return largest_difference(frame, expected, deviations);
   }
 
@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(All, LrpParity,
 TEST(LrpShader, TellsWhatItCannotServe) {
   using testing::HasSubstr;
   using testing::ThrowsMessage;
-  const auto recipe = [](const LrpOptions& options, ShaderRequest request) {
+  const auto recipe = [](const LrpOptions& options, const ShaderRequest& request) {
     return [=] {
       static_cast<void>(make_lrp(analyze_lrp(test_exemplar({72, 70}, 1), options, Seed{2}))->shader(request));
     };
