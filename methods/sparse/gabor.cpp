@@ -1,0 +1,164 @@
+#include "methods/sparse/gabor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "methods/base/convolution.h"
+#include "methods/sparse/gabor_spectrum.h"
+#include "methods/sparse/gabor_sum.h"
+
+namespace textonbench {
+namespace {
+
+constexpr double furthest_place = 0x1p40;
+constexpr double widest_kernel = 512;
+
+bool is_close(const Point2& p) { return std::abs(p.x) <= furthest_place && std::abs(p.y) <= furthest_place; }
+
+class GaborNoise final : public Model, public Gaussian, public Procedural {
+ public:
+  GaborNoise(GaborField field, std::vector<double> mean) : field_(std::move(field)), mean_(std::move(mean)) {}
+
+  const GaborField& field() const { return field_; }
+
+  Image synthesize(const Domain& domain, Seed seed) const override {
+    if (const auto reason = refuse_gabor_domain(domain)) throw std::invalid_argument(*reason);
+    Image out(domain.size, field_.channels);
+    add_gabor(field_, seed, {domain.origin.x, domain.origin.y, domain.step}, out);
+    add_constant(mean_, out);
+    return out;
+  }
+
+  const Gaussian* gaussian() const override { return this; }
+  std::vector<double> mean() const override { return mean_; }
+  CrossSpectrum spectrum(Extent grid) const override { return gabor_spectrum(field_, grid); }
+
+  const Procedural* procedural() const override { return this; }
+  void evaluate(std::span<const Point2> points, Seed seed, std::span<float> out) const override {
+    if (out.size() != points.size() * mean_.size()) {
+      throw std::invalid_argument(fmt::format("{} points of gabor into {} numbers: expected {} a point", points.size(),
+                                              out.size(), mean_.size()));
+    }
+    std::vector<WavePoint> plane;
+    plane.reserve(points.size());
+    constexpr auto unit = static_cast<double>(std::int64_t{1} << plane_bits);
+    for (const Point2& p : points) {
+      if (!is_close(p)) {
+        throw std::invalid_argument(
+            fmt::format("gabor at ({}, {}): expected a point within 2^40 pixels of the origin", p.x, p.y));
+      }
+      plane.push_back(
+          {static_cast<std::int64_t>(std::floor(p.x * unit)), static_cast<std::int64_t>(std::floor(p.y * unit))});
+    }
+    sum_gabor(field_, seed, plane, out);
+    for (std::size_t c = 0; c < mean_.size(); ++c) {
+      for (float& v : out.subspan(c * points.size(), points.size())) v += static_cast<float>(mean_[c]);
+    }
+  }
+  /// Kernels end where they are cut.
+  int smoothness() const override { return 0; }
+  void gradient(std::span<const Point2>, Seed, std::span<float>) const override {
+    throw std::invalid_argument("gradients of gabor: its kernels are cut, and their sum jumps there");
+  }
+
+  Footprint footprint(const Domain&) const override {
+    Footprint sum;
+    for (const GaborBand& band : field_.bands) {
+      sum.model_bytes += band.bytes();
+      // Of each kernel that reaches a pixel two multiplications and additions a channel; columns and rows are few.
+      const double impacts = band.intensity * std::numbers::pi * band.radius * band.radius;
+      sum.operations_per_pixel += impacts * 4 * field_.channels;
+    }
+    return sum;
+  }
+
+ private:
+  GaborField field_;
+  std::vector<double> mean_;
+};
+
+}  // namespace
+
+std::optional<std::string> refuse_gabor_domain(const Domain& domain) {
+  if (domain.periodic) {
+    return "gabor on a torus: its impacts are those of the plane; expected a domain that is not periodic";
+  }
+  if (!(std::isfinite(domain.step) && domain.step > 0)) {
+    return fmt::format("gabor at a step of {} pixels: expected a finite number above 0", domain.step);
+  }
+  const Point2 last{domain.origin.x + domain.step * (domain.size.width - 1.0),
+                    domain.origin.y + domain.step * (domain.size.height - 1.0)};
+  for (const Point2& corner : {domain.origin, last}) {
+    if (!is_close(corner)) {
+      return fmt::format("gabor at ({}, {}): expected pixels within 2^40 of the origin", corner.x, corner.y);
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> refuse_gabor(const GaborOptions& options) {
+  const auto in_range = [](double v, double low, double high) { return v >= low && v <= high; };
+  if (!in_range(options.frequency, 0, 1)) {
+    return fmt::format("gabor of {} cycles a pixel: expected a number from 0 to 1", options.frequency);
+  }
+  if (!(options.directions >= 1 && options.directions <= 4096)) {
+    return fmt::format("gabor of {} directions: expected 1 to 4096", options.directions);
+  }
+  if (!std::isfinite(options.orientation)) {
+    return fmt::format("gabor with an orientation of {} degrees: expected a finite number", options.orientation);
+  }
+  if (!(in_range(options.cut, 1e-6, 0.5) && options.bandwidth > 0 &&
+        in_range(gabor_radius(options.bandwidth, options.cut), 1, widest_kernel))) {
+    return fmt::format(
+        "gabor of bandwidth {} cut at {}: expected a cut in [1e-6, 0.5] and kernels of a radius of 1 to 512 pixels",
+        options.bandwidth, options.cut);
+  }
+  if (!in_range(options.mni, 0.01, 1000)) {
+    return fmt::format("gabor of {} impacts at a point: expected 0.01 to 1000", options.mni);
+  }
+  if (options.process == ImpactProcess::paper) return "gabor with the impacts of another paper's shader";
+  if (options.process == ImpactProcess::poisson && options.phase != GaborPhase::random &&
+      options.weight == GaborWeight::impacts) {
+    return "gabor of poisson impacts, which have weight 1, of one phase: its mean is not zero; expected phase = "
+           "random, "
+           "impacts = signed_poisson or stratified, or weights = uniform";
+  }
+  return std::nullopt;
+}
+
+GaborField gabor_field(const GaborOptions& options) {
+  if (const auto reason = refuse_gabor(options)) throw std::invalid_argument(*reason);
+  GaborField field{
+      .channels = 1, .process = options.process, .phase = options.phase, .weight = options.weight, .bands = {}};
+  GaborBand& band = field.bands.emplace_back();
+  band.bandwidth = options.bandwidth;
+  band.radius = gabor_radius(options.bandwidth, options.cut);
+  const double wanted = options.mni / (std::numbers::pi * band.radius * band.radius);
+  // Stratified cells are rounded to 1/1024 pixel.
+  band.intensity = ImpactGrid(options.process, wanted, band.radius, 1).intensity();
+  const int n = options.directions;
+  for (int i = 0; i < n; ++i) {
+    const double angle = std::numbers::pi * (options.orientation / 180 + static_cast<double>(i) / n);
+    band.frequency.push_back({options.frequency * std::cos(angle), options.frequency * std::sin(angle)});
+    band.chance.push_back(static_cast<std::uint32_t>(std::min(std::floor((i + 1.0) / n * 0x1p32), 0x1p32 - 1)));
+  }
+  band.color.assign(static_cast<std::size_t>(n), 1);
+  const auto amplitude = static_cast<float>(1 / std::sqrt(gabor_covariance(field)(0, 0)));
+  std::ranges::fill(band.color, std::complex<float>(amplitude));
+  return field;
+}
+
+std::unique_ptr<Model> make_gabor(GaborField field, std::vector<double> mean) {
+  return std::make_unique<GaborNoise>(std::move(field), std::move(mean));
+}
+
+const GaborField* gabor_field_of(const Model& model) {
+  const auto* noise = dynamic_cast<const GaborNoise*>(&model);
+  return noise == nullptr ? nullptr : &noise->field();
+}
+
+}  // namespace textonbench

@@ -1,0 +1,193 @@
+// Gabor noise against its definition, and its law.
+#include "methods/sparse/gabor.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "methods/sparse/gabor_spectrum.h"
+#include "methods/sparse/gabor_sum.h"
+#include "tests/texture.h"
+
+namespace textonbench {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr std::int64_t pixel = std::int64_t{1} << plane_bits;
+
+/// Two bands of unlike kernels and complex colors.
+GaborField test_field(int channels) {
+  GaborField field = gabor_field({.frequency = 0.11, .orientation = 20, .directions = 3, .bandwidth = 0.06, .mni = 4});
+  field.bands.push_back(gabor_field({.frequency = 0.3, .directions = 1, .bandwidth = 0.2, .mni = 6}).bands.front());
+  field.channels = channels;
+  for (GaborBand& band : field.bands) {
+    band.color.clear();
+    for (std::size_t e = 0; e < band.frequency.size(); ++e) {
+      for (int c = 0; c < channels; ++c) band.color.emplace_back(0.3F + 0.1F * static_cast<float>(c), 0.2F);
+    }
+  }
+  return field;
+}
+
+/// As it is written, in double precision and by libm.
+std::vector<double> plain_gabor(const GaborField& field, Seed seed, const WavePoint& point) {
+  std::vector<double> sum(static_cast<std::size_t>(field.channels));
+  for (std::size_t b = 0; b < field.bands.size(); ++b) {
+    const GaborBand& band = field.bands[b];
+    const auto reach = static_cast<std::int64_t>((band.radius + 3) * pixel);
+    std::vector<GaborImpact> impacts;
+    GaborImpacts(field, b, seed).draw({point.x - reach, point.y - reach, point.x + reach, point.y + reach}, impacts);
+    for (const GaborImpact& impact : impacts) {
+      const double x = static_cast<double>(point.x - impact.x) / pixel;
+      const double y = static_cast<double>(point.y - impact.y) / pixel;
+      if (x * x + y * y >= band.radius * band.radius) continue;
+      const double window = std::exp(-std::numbers::pi * band.bandwidth * band.bandwidth * (x * x + y * y));
+      const GaborFrequency& f = band.frequency[impact.entry];
+      const double angle = 2 * std::numbers::pi * (f.x * x + f.y * y + impact.phase * 0x1p-32);
+      for (int c = 0; c < field.channels; ++c) {
+        const std::complex<double> color(
+            band.color[impact.entry * static_cast<std::size_t>(field.channels) + static_cast<std::size_t>(c)]);
+        sum[static_cast<std::size_t>(c)] +=
+            static_cast<double>(impact.weight) * window * (color * std::polar(1.0, angle)).real();
+      }
+    }
+  }
+  return sum;
+}
+
+TEST(SumGabor, IsTheDefinition) {
+  for (const int channels : {1, 3}) {
+    const GaborField field = test_field(channels);
+    for (const double at : {0.0, 1e11}) {
+      std::vector<WavePoint> points;
+      points.reserve(60);
+      for (std::int64_t i = 0; i < 60; ++i) {
+        points.push_back({static_cast<std::int64_t>(at) * pixel + i * i * pixel / 7, -i * 13 * pixel / 5});
+      }
+      std::vector<float> out(points.size() * static_cast<std::size_t>(channels));
+      sum_gabor(field, Seed{4}, points, out);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto expected = plain_gabor(field, Seed{4}, points[i]);
+        for (std::size_t c = 0; c < expected.size(); ++c) {
+          EXPECT_NEAR(out[c * points.size() + i], expected[c], 1e-5) << i << " " << c;
+        }
+      }
+    }
+  }
+}
+
+TEST(AddGabor, RasterHasTheBitsOfThePoints) {
+  const GaborField field = test_field(3);
+  for (const WaveRaster& raster :
+       {WaveRaster{0, 0, 1}, WaveRaster{-33.25, 17.5, 0.37}, WaveRaster{1e11, -1e11, 1}, WaveRaster{2, 3, 40}}) {
+    Image out({70, 66}, 3);
+    add_gabor(field, Seed{6}, raster, out);
+    std::vector<WavePoint> points;
+    points.reserve(70 * 66);
+    for (int y = 0; y < 66; ++y) {
+      for (int x = 0; x < 70; ++x) {
+        points.push_back({static_cast<std::int64_t>(std::floor((raster.x + raster.step * x) * pixel)),
+                          static_cast<std::int64_t>(std::floor((raster.y + raster.step * y) * pixel))});
+      }
+    }
+    std::vector<float> expected(3 * points.size());
+    sum_gabor(field, Seed{6}, points, expected);
+    for (int c = 0; c < 3; ++c) {
+      for (int i = 0; i < 70 * 66; ++i) {
+        ASSERT_EQ(out.at(c, i % 70, i / 70), expected[static_cast<std::size_t>(c * 70 * 66 + i)]) << raster.step;
+      }
+    }
+  }
+}
+
+/// ∫ g(y) g(y + s) dy on a grid of 1/16 pixel.
+TEST(GaborWindowCorrelation, IsTheIntegral) {
+  const GaborBand band = gabor_field({.bandwidth = 0.15, .cut = 0.05}).bands.front();
+  for (const double s : {0.0, 2.0, 5.5, 9.0, 12.9}) {
+    double sum = 0;
+    constexpr int fine = 16;
+    const int reach = static_cast<int>(fine * (band.radius + s)) + 1;
+    for (int j = -reach; j <= reach; ++j) {
+      for (int i = -reach; i <= reach; ++i) {
+        const double x = (i + 0.5) / fine, y = (j + 0.5) / fine;
+        const double one = x * x + y * y, other = (x + s) * (x + s) + y * y;
+        if (std::max(one, other) >= band.radius * band.radius) continue;
+        sum += std::exp(-std::numbers::pi * band.bandwidth * band.bandwidth * (one + other)) / (fine * fine);
+      }
+    }
+    EXPECT_NEAR(gabor_window_correlation(band, s), sum, 2e-3 * gabor_energy(band)) << s;
+  }
+  EXPECT_NEAR(gabor_window_correlation(band, 0), gabor_energy(band), 1e-5 * gabor_energy(band));
+  EXPECT_EQ(gabor_window_correlation(band, 2 * band.radius), 0);
+}
+
+/// 10000 values far apart have a standard error of at most sqrt(3 / 10000) = 1.8 % of the variance, their excess
+/// kurtosis being below 1: 15 tests have a false alarm at 4.5 of them with a chance of 1e-4.
+TEST(Gabor, HasUnitVarianceForEveryPhaseWeightAndProcess) {
+  std::vector<WavePoint> points;
+  points.reserve(10000);
+  for (std::int64_t i = 0; i < 10000; ++i) points.push_back({i % 100 * 97 * pixel, i / 100 * 89 * pixel});
+  int laws = 0;
+  for (const ImpactProcess process :
+       {ImpactProcess::stratified, ImpactProcess::signed_poisson, ImpactProcess::poisson}) {
+    for (const GaborPhase phase : {GaborPhase::random, GaborPhase::cosine, GaborPhase::sine}) {
+      for (const GaborWeight weight : {GaborWeight::impacts, GaborWeight::uniform}) {
+        // Low frequencies, so that phases matter, and kernels that are cut early.
+        const GaborOptions options{.frequency = 0.03,
+                                   .directions = 2,
+                                   .bandwidth = 0.06,
+                                   .cut = 0.1,
+                                   .mni = 12,
+                                   .process = process,
+                                   .phase = phase,
+                                   .weight = weight};
+        if (refuse_gabor(options)) continue;
+        ++laws;
+        const GaborField field = gabor_field(options);
+        EXPECT_NEAR(gabor_covariance(field)(0, 0), 1, 1e-6);
+        std::vector<float> values(points.size());
+        sum_gabor(field, Seed{static_cast<std::uint64_t>(laws)}, points, values);
+        double mean = 0, second = 0;
+        for (const float v : values) mean += static_cast<double>(v) / 10000, second += double{v} * v / 10000;
+        EXPECT_NEAR(mean, 0, 4.5 * 0.01);
+        EXPECT_NEAR(second, 1, 4.5 * 0.018) << laws;
+      }
+    }
+  }
+  EXPECT_EQ(laws, 16) << "but poisson impacts of one phase and weight 1";
+}
+
+/// Excess kurtosis of a Poisson process of random phases, (3/2) ∫ g⁴ / (λ (∫ g²)²). Its estimate from 40000 values
+/// scatters by about sqrt(24 / 40000) of a normal law, some times that here: 0.1 leaves room for 4 of 0.025.
+TEST(Gabor, KurtosisFallsWithTheImpacts) {
+  std::vector<WavePoint> points;
+  points.reserve(40000);
+  for (std::int64_t i = 0; i < 40000; ++i) points.push_back({i % 200 * 61 * pixel, i / 200 * 67 * pixel});
+  for (const double mni : {6.0, 20.0}) {
+    const GaborField field = gabor_field(
+        {.frequency = 0.2, .directions = 1, .bandwidth = 0.12, .mni = mni, .process = ImpactProcess::signed_poisson});
+    std::vector<float> values(points.size());
+    sum_gabor(field, Seed{3}, points, values);
+    double second = 0, fourth = 0;
+    for (const float v : values) second += double{v} * v / 40000, fourth += std::pow(double{v}, 4) / 40000;
+    const double a = field.bands.front().bandwidth;
+    EXPECT_NEAR(fourth / (second * second) - 3, 1.5 * a * a / field.bands.front().intensity, 0.1) << mni;
+  }
+}
+
+TEST(Gabor, TellsWhatItCannotServe) {
+  const auto field = [](const GaborOptions& options) { return [=] { static_cast<void>(gabor_field(options)); }; };
+  EXPECT_THAT(field({.frequency = 2}), ThrowsMessage<std::invalid_argument>(HasSubstr("2 cycles a pixel")));
+  EXPECT_THAT(field({.directions = 0}), ThrowsMessage<std::invalid_argument>(HasSubstr("0 directions")));
+  EXPECT_THAT(field({.bandwidth = 1e-4}), ThrowsMessage<std::invalid_argument>(HasSubstr("radius of 1 to 512")));
+  EXPECT_THAT(field({.mni = 0}), ThrowsMessage<std::invalid_argument>(HasSubstr("expected 0.01 to 1000")));
+  EXPECT_THAT(field({.process = ImpactProcess::poisson, .phase = GaborPhase::cosine}),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("its mean is not zero")));
+}
+
+}  // namespace
+}  // namespace textonbench
