@@ -14,7 +14,6 @@
 namespace textonbench {
 namespace {
 
-constexpr std::int64_t pixel = std::int64_t{1} << plane_bits;
 constexpr int footprint = 8;
 
 /// Squared distance of an estimate from the known power, over that of zero.
@@ -42,10 +41,11 @@ double filter_error(int channels, const Sharp& sharp, const Filtered& filtered) 
   centers.reserve(count);
   points.reserve(static_cast<std::size_t>(count * fine * fine));
   for (std::int64_t i = 0; i < count; ++i) {
-    const WavePoint center = centers.emplace_back(WavePoint{i * 37 * pixel / 3, (i * i % 509) * 11 * pixel / 2});
+    const WavePoint center =
+        centers.emplace_back(WavePoint{i * 37 * plane_pixel / 3, (i * i % 509) * 11 * plane_pixel / 2});
     for (std::int64_t k = 0; k < fine * fine; ++k) {
-      points.push_back({center.x + (2 * (k % fine) + 1 - fine) * footprint * pixel / (2 * fine),
-                        center.y + (2 * (k / fine) + 1 - fine) * footprint * pixel / (2 * fine)});
+      points.push_back({center.x + (2 * (k % fine) + 1 - fine) * footprint * plane_pixel / (2 * fine),
+                        center.y + (2 * (k / fine) + 1 - fine) * footprint * plane_pixel / (2 * fine)});
     }
   }
   const auto planes = static_cast<std::size_t>(channels);

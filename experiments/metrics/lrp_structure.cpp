@@ -14,8 +14,6 @@
 namespace textonbench {
 namespace {
 
-constexpr std::int64_t pixel = std::int64_t{1} << plane_bits;
-
 /// The analysis of a model that has a structure.
 const LrpAnalysis* analysis_with_structure(const Model& model) {
   const LrpAnalysis* lrp = lrp_analysis_of(model);
@@ -60,7 +58,7 @@ std::vector<WavePoint> pairs_across_blocks(int period, std::int64_t gap) {
   std::vector<WavePoint> points;
   points.reserve(512);
   for (std::int64_t i = 0; i < 256; ++i) {
-    const std::int64_t border = (i % 16 - 8) * period * pixel / 2, along = (i * 7919 % 4096) * pixel / 7;
+    const std::int64_t border = (i % 16 - 8) * period * plane_pixel / 2, along = (i * 7919 % 4096) * plane_pixel / 7;
     const std::int64_t before = border - gap / 2, behind = before + gap;
     points.push_back(i < 128 ? WavePoint{before, along} : WavePoint{along, before});
     points.push_back(i < 128 ? WavePoint{behind, along} : WavePoint{along, behind});
@@ -77,7 +75,7 @@ double displacement_change(const FixedPhases& fixed, const std::vector<WavePoint
     for (const auto axis : {&WavePoint::x, &WavePoint::y}) {
       const std::int64_t before = displaced[i].*axis - points[i].*axis;
       const std::int64_t behind = displaced[i + 1].*axis - points[i + 1].*axis;
-      sum += std::pow(static_cast<double>(behind - before) / pixel, 2);
+      sum += std::pow(static_cast<double>(behind - before) / plane_pixel, 2);
     }
   }
   return std::sqrt(sum / static_cast<double>(points.size())) / fixed.turbulence;
@@ -126,7 +124,8 @@ std::vector<double> octave_power(const FixedPhases& fixed) {
   constexpr std::uint64_t seeds = 4;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     std::vector<WavePoint> points;
-    for (std::int64_t i = 0; i < std::int64_t{side} * side; ++i) points.push_back({i % side * pixel, i / side * pixel});
+    for (std::int64_t i = 0; i < std::int64_t{side} * side; ++i)
+      points.push_back({i % side * plane_pixel, i / side * plane_pixel});
     std::vector<float> values(points.size() * static_cast<std::size_t>(channels));
     fixed.add(Seed{seed}, points, values);
     Image image({side, side}, channels);
@@ -208,7 +207,7 @@ std::optional<double> lrp_table_entries(const Model& model, const Target&, const
 std::optional<double> lrp_distortion_jump(const Model& model, const Target&, const Domain&) {
   const LrpAnalysis* lrp = analysis_with_structure(model);
   if (lrp == nullptr || lrp->fixed->turbulence <= 0) return std::nullopt;
-  return displacement_change(*lrp->fixed, pairs_across_blocks(lrp->fixed->structure.period(), pixel >> 10));
+  return displacement_change(*lrp->fixed, pairs_across_blocks(lrp->fixed->structure.period(), plane_pixel >> 10));
 }
 
 std::optional<double> lrp_swapped_distortion_jump(const Model& model, const Target&, const Domain&) {
@@ -216,7 +215,7 @@ std::optional<double> lrp_swapped_distortion_jump(const Model& model, const Targ
   if (lrp == nullptr || lrp->fixed->turbulence <= 0) return std::nullopt;
   // Each point where its block is taken from: the displacement is that of there.
   const int period = lrp->fixed->structure.period();
-  std::vector<WavePoint> points = pairs_across_blocks(period, pixel >> 10);
+  std::vector<WavePoint> points = pairs_across_blocks(period, plane_pixel >> 10);
   const Stream stream = placement_stream(Seed{1});
   for (WavePoint& point : points) {
     PlacedPoint places[4];
@@ -229,7 +228,7 @@ std::optional<double> lrp_swapped_distortion_jump(const Model& model, const Targ
 std::optional<double> lrp_jump(const Model& model, const Target& target, const Domain&) {
   const LrpAnalysis* lrp = lrp_analysis_of(model);
   if (lrp == nullptr) return std::nullopt;
-  constexpr std::int64_t gap = pixel >> 12;
+  constexpr std::int64_t gap = plane_pixel >> 12;
   std::vector<WavePoint> pairs = pairs_across_blocks(lrp->spectrum.side(), gap);
   for (std::size_t l = 0; l < lrp->field.layers.size(); ++l) {
     const WaveLattice lattice(lrp->field, l, Seed{1});
@@ -247,7 +246,7 @@ std::optional<double> lrp_jump(const Model& model, const Target& target, const D
   std::vector<Point2> points;
   points.reserve(pairs.size());
   for (const WavePoint& p : pairs) {
-    points.push_back({static_cast<double>(p.x) / pixel, static_cast<double>(p.y) / pixel});
+    points.push_back({static_cast<double>(p.x) / plane_pixel, static_cast<double>(p.y) / plane_pixel});
   }
   const auto channels = static_cast<std::size_t>(lrp->field.channels);
   std::vector<float> values(points.size() * channels);

@@ -14,10 +14,12 @@
 namespace textonbench {
 namespace {
 
-constexpr double furthest_place = 0x1p40;
+constexpr double furthest_impact_place = 0x1p40;
 constexpr double widest_kernel = 512;
 
-bool is_close(const Point2& p) { return std::abs(p.x) <= furthest_place && std::abs(p.y) <= furthest_place; }
+bool is_in_reach(const Point2& p) {
+  return std::abs(p.x) <= furthest_impact_place && std::abs(p.y) <= furthest_impact_place;
+}
 
 class GaborNoise final : public Model, public Gaussian, public Procedural {
  public:
@@ -47,7 +49,7 @@ class GaborNoise final : public Model, public Gaussian, public Procedural {
     plane.reserve(points.size());
     constexpr auto unit = static_cast<double>(std::int64_t{1} << plane_bits);
     for (const Point2& p : points) {
-      if (!is_close(p)) {
+      if (!is_in_reach(p)) {
         throw std::invalid_argument(
             fmt::format("gabor at ({}, {}): expected a point within 2^40 pixels of the origin", p.x, p.y));
       }
@@ -93,7 +95,7 @@ std::optional<std::string> refuse_gabor_domain(const Domain& domain) {
   const Point2 last{domain.origin.x + domain.step * (domain.size.width - 1.0),
                     domain.origin.y + domain.step * (domain.size.height - 1.0)};
   for (const Point2& corner : {domain.origin, last}) {
-    if (!is_close(corner)) {
+    if (!is_in_reach(corner)) {
       return fmt::format("gabor at ({}, {}): expected pixels within 2^40 of the origin", corner.x, corner.y);
     }
   }

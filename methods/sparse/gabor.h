@@ -1,7 +1,7 @@
 // Gabor noise of given frequency, bandwidth and orientation (Lagae, Lefebvre, Drettakis, Dutré, SIGGRAPH 2009), with
 // stratified impacts of random signs by default (Tavernier, Neyret, Vergne, Thollot, Eurographics 2019).
 //
-// It has the mean of its exemplar, and the variance of its colors along their principal axis; its spectrum is its own.
+// It has the mean of its exemplar and the covariance of its colors; its spectrum is its own.
 #pragma once
 
 #include <memory>

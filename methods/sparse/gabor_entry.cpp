@@ -1,4 +1,5 @@
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -26,21 +27,29 @@ GaborOptions gabor_options(const Params& params) {
   return options;
 }
 
-/// The gray noise along the principal axis of the exemplar's colors, with all of their variance.
+/// Kernels of each axis of the exemplar's colors, as often as its part of the variance.
 std::unique_ptr<Model> analyze_gabor(const Problem& problem, const Params& params, Seed) {
   require_usable(problem.exemplar);
-  const Image& pixels = problem.exemplar.pixels;
-  const GaussianModel colors = gaussian_model(pixels);
+  const GaussianModel colors = gaussian_model(problem.exemplar.pixels);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(color_covariance(colors.spectrum));
+  const Eigen::VectorXd variance = axes.eigenvalues().cwiseMax(0);
+  const auto deviation = static_cast<float>(std::sqrt(variance.sum()));
   GaborField field = gabor_field(gabor_options(params));
-  field.channels = pixels.channels();
+  field.channels = problem.exemplar.pixels.channels();
   GaborBand& band = field.bands.front();
-  const std::vector<std::complex<float>> gray = std::move(band.color);
-  const double deviation = std::sqrt(axes.eigenvalues().cwiseMax(0).sum());
-  band.color.clear();
-  for (const std::complex<float>& amplitude : gray) {
-    for (int c = 0; c < field.channels; ++c) {
-      band.color.push_back(amplitude * static_cast<float>(deviation * axes.eigenvectors()(c, field.channels - 1)));
+  const std::vector<GaborFrequency> directions = std::move(band.frequency);
+  const std::complex<float> amplitude = deviation * band.color.front();
+  band.frequency.clear(), band.chance.clear(), band.color.clear();
+  double upto = 0;
+  for (int axis = field.channels - 1; axis >= 0; --axis) {
+    if (variance[axis] <= 1e-12 * variance.sum()) continue;
+    for (const GaborFrequency& direction : directions) {
+      upto += variance[axis] / variance.sum() / static_cast<double>(directions.size());
+      band.frequency.push_back(direction);
+      band.chance.push_back(static_cast<std::uint32_t>(std::min(std::floor(upto * 0x1p32), 0x1p32 - 1)));
+      for (int c = 0; c < field.channels; ++c) {
+        band.color.push_back(amplitude * static_cast<float>(axes.eigenvectors()(c, axis)));
+      }
     }
   }
   return make_gabor(std::move(field), colors.mean);

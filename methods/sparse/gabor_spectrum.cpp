@@ -10,11 +10,11 @@
 namespace textonbench {
 namespace {
 
-std::size_t pair_of(int c, int d) {
+std::size_t color_pair(int c, int d) {
   return static_cast<std::size_t>(c) * (static_cast<std::size_t>(c) + 1) / 2 + static_cast<std::size_t>(d);
 }
 
-std::vector<double> chances(const GaborBand& band) {
+std::vector<double> entry_chances(const GaborBand& band) {
   std::vector<double> all;
   all.reserve(band.chance.size());
   double before = 0;
@@ -27,7 +27,7 @@ std::vector<double> chances(const GaborBand& band) {
 }
 
 /// κ_e / ρ(0) with the sign of the phase.
-std::vector<double> imbalances(const GaborField& field, const GaborBand& band) {
+std::vector<double> phase_imbalances(const GaborField& field, const GaborBand& band) {
   std::vector<double> all(band.frequency.size());
   if (field.phase == GaborPhase::random) return all;
   const double sign = field.phase == GaborPhase::cosine ? 1 : -1, energy = gabor_energy(band);
@@ -41,8 +41,8 @@ class BandCovariance {
   BandCovariance(const GaborField& field, const GaborBand& band)
       : channels_(field.channels),
         band_(band),
-        chance_(chances(band)),
-        imbalance_(imbalances(field, band)),
+        chance_(entry_chances(band)),
+        imbalance_(phase_imbalances(field, band)),
         scale_(0.5 * band.intensity * field.weight_power()) {}
 
   void add(int x, int y, double window, std::vector<double>& covariance) const {
@@ -55,7 +55,7 @@ class BandCovariance {
         const std::complex<double> one(color[c]);
         for (int d = 0; d <= c; ++d) {
           const std::complex<double> other(color[d]);
-          covariance[pair_of(c, d)] +=
+          covariance[color_pair(c, d)] +=
               weight * ((one * std::conj(other) * wave).real() + imbalance_[e] * (one * other).real());
         }
       }
@@ -90,18 +90,18 @@ double gabor_window_correlation(const GaborBand& band, double distance) {
 }
 
 Eigen::MatrixXd gabor_covariance(const GaborField& field) {
-  std::vector<double> pairs(pair_of(field.channels, 0));
+  std::vector<double> pairs(color_pair(field.channels, 0));
   for (const GaborBand& band : field.bands) BandCovariance(field, band).add(0, 0, gabor_energy(band), pairs);
   Eigen::MatrixXd covariance(field.channels, field.channels);
   for (int c = 0; c < field.channels; ++c) {
-    for (int d = 0; d <= c; ++d) covariance(c, d) = covariance(d, c) = pairs[pair_of(c, d)];
+    for (int d = 0; d <= c; ++d) covariance(c, d) = covariance(d, c) = pairs[color_pair(c, d)];
   }
   return covariance;
 }
 
 CrossSpectrum gabor_spectrum(const GaborField& field, Extent grid) {
   std::vector<Image> covariance;
-  for (std::size_t pair = 0; pair < pair_of(field.channels, 0); ++pair) covariance.emplace_back(grid, 1);
+  for (std::size_t pair = 0; pair < color_pair(field.channels, 0); ++pair) covariance.emplace_back(grid, 1);
   const auto wrap = [](int i, int n) { return (i % n + n) % n; };
   for (const GaborBand& band : field.bands) {
     const BandCovariance sum(field, band);

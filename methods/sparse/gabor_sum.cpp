@@ -11,16 +11,16 @@
 namespace textonbench {
 namespace {
 
-constexpr double pixel = static_cast<double>(std::int64_t{1} << plane_bits);
+constexpr double units_a_pixel = static_cast<double>(plane_pixel);
 /// Side of the rectangles whose impacts are drawn at a time, in raster pixels.
-constexpr int tile_side = 64;
+constexpr int gabor_tile = 64;
 
-std::int64_t plane_coordinate(double at) { return static_cast<std::int64_t>(std::floor(at * pixel)); }
+std::int64_t plane_coordinate(double at) { return static_cast<std::int64_t>(std::floor(at * units_a_pixel)); }
 
 /// g along one axis, from a table: exp(−π a² t²), |t| <= R, within 3e-7.
 class GaussianTable {
  public:
-  explicit GaussianTable(const GaborBand& band) : scale_(nodes / (band.radius * pixel)), values_(nodes + 2) {
+  explicit GaussianTable(const GaborBand& band) : scale_(nodes / (band.radius * units_a_pixel)), values_(nodes + 2) {
     for (int i = 0; i < nodes + 2; ++i) {
       const double t = band.radius * i / nodes;
       values_[static_cast<std::size_t>(i)] =
@@ -48,7 +48,7 @@ struct AxisPart {
 };
 
 /// `frequency` in 2^−32 turn a pixel, `distance` in 2^−22 pixel, at most 512 pixels.
-AxisPart part_of(const GaussianTable& table, std::int64_t frequency, std::int64_t distance, std::uint32_t phase) {
+AxisPart axis_part(const GaussianTable& table, std::int64_t frequency, std::int64_t distance, std::uint32_t phase) {
   constexpr int dropped = 2;
   const std::int64_t turns = (frequency * (distance >> dropped)) >> (plane_bits - dropped);
   float cosine = 0, sine = 0;
@@ -59,8 +59,8 @@ AxisPart part_of(const GaussianTable& table, std::int64_t frequency, std::int64_
 
 std::int64_t turns_a_pixel(double frequency) { return std::llround(frequency * 0x1p32); }
 
-double squared_pixels(std::int64_t distance) {
-  const double d = static_cast<double>(distance) / pixel;
+double squared_pixel_distance(std::int64_t distance) {
+  const double d = static_cast<double>(distance) / units_a_pixel;
   return d * d;
 }
 
@@ -98,20 +98,20 @@ class KernelRaster {
     const std::int64_t along_x = turns_a_pixel(f.x), along_y = turns_a_pixel(f.y);
     for (std::size_t i = 0; i < columns; ++i) {
       const std::int64_t distance = from[static_cast<std::ptrdiff_t>(i)] - impact.x;
-      squares_[i] = squared_pixels(distance);
-      const AxisPart part = part_of(table_, along_x, clamped(distance), 0);
+      squares_[i] = squared_pixel_distance(distance);
+      const AxisPart part = axis_part(table_, along_x, clamped(distance), 0);
       real_[i] = part.real, imaginary_[i] = part.imaginary;
     }
     const std::complex<float>* color =
         band_.color.data() + std::size_t{impact.entry} * static_cast<std::size_t>(channels_);
     for (auto row = above; row < below; ++row) {
       const std::int64_t distance = *row - impact.y;
-      const double left_over = band_.radius * band_.radius - squared_pixels(distance);
+      const double left_over = band_.radius * band_.radius - squared_pixel_distance(distance);
       std::size_t first = 0, end = columns;
       while (first < end && squares_[first] >= left_over) ++first;
       while (end > first && squares_[end - 1] >= left_over) --end;
       if (first == end) continue;
-      const AxisPart part = part_of(table_, along_y, clamped(distance), impact.phase);
+      const AxisPart part = axis_part(table_, along_y, clamped(distance), impact.phase);
       const auto y_out = top + static_cast<int>(row - y.begin());
       const auto x_out = static_cast<std::size_t>(left) + static_cast<std::size_t>(from - x.begin()) + first;
       for (int c = 0; c < channels_; ++c) {
@@ -133,8 +133,8 @@ class KernelRaster {
   std::vector<double> squares_;
 };
 
-PlaneRectangle around(std::int64_t left, std::int64_t top, std::int64_t right, std::int64_t bottom,
-                      std::int64_t reach) {
+PlaneRectangle with_margin(std::int64_t left, std::int64_t top, std::int64_t right, std::int64_t bottom,
+                           std::int64_t reach) {
   return {left - reach, top - reach, right + reach + 1, bottom + reach + 1};
 }
 
@@ -159,7 +159,7 @@ void sum_gabor(const GaborField& field, Seed seed, std::span<const WavePoint> po
       for (std::size_t c = 0; c < channels; ++c) value.at(static_cast<int>(c), 0, 0) = 0;
       for (std::size_t b = 0; b < kernels.size(); ++b) {
         impacts.clear();
-        drawers[b].draw(around(x[0], y[0], x[0], y[0], kernels[b].reach()), impacts);
+        drawers[b].draw(with_margin(x[0], y[0], x[0], y[0], kernels[b].reach()), impacts);
         for (const GaborImpact& impact : impacts) kernels[b].add(impact, x, y, 0, 0, value);
       }
       for (std::size_t c = 0; c < channels; ++c) out[c * points.size() + i] = value.at(static_cast<int>(c), 0, 0);
@@ -168,14 +168,14 @@ void sum_gabor(const GaborField& field, Seed seed, std::span<const WavePoint> po
 }
 
 void add_gabor(const GaborField& field, Seed seed, const WaveRaster& raster, Image& out) {
-  const int across = (out.width() + tile_side - 1) / tile_side, down = (out.height() + tile_side - 1) / tile_side;
+  const int across = (out.width() + gabor_tile - 1) / gabor_tile, down = (out.height() + gabor_tile - 1) / gabor_tile;
   parallel_for(across * down, [&](int tile) {
-    const int left = tile % across * tile_side, top = tile / across * tile_side;
+    const int left = tile % across * gabor_tile, top = tile / across * gabor_tile;
     std::vector<std::int64_t> x, y;
-    for (int i = left; i < std::min(left + tile_side, out.width()); ++i) {
+    for (int i = left; i < std::min(left + gabor_tile, out.width()); ++i) {
       x.push_back(plane_coordinate(raster.x + raster.step * i));
     }
-    for (int i = top; i < std::min(top + tile_side, out.height()); ++i) {
+    for (int i = top; i < std::min(top + gabor_tile, out.height()); ++i) {
       y.push_back(plane_coordinate(raster.y + raster.step * i));
     }
     // Sums start at zero, as at points.
@@ -184,7 +184,7 @@ void add_gabor(const GaborField& field, Seed seed, const WaveRaster& raster, Ima
     for (std::size_t b = 0; b < field.bands.size(); ++b) {
       KernelRaster kernel(field, field.bands[b]);
       impacts.clear();
-      GaborImpacts(field, b, seed).draw(around(x.front(), y.front(), x.back(), y.back(), kernel.reach()), impacts);
+      GaborImpacts(field, b, seed).draw(with_margin(x.front(), y.front(), x.back(), y.back(), kernel.reach()), impacts);
       for (const GaborImpact& impact : impacts) kernel.add(impact, x, y, 0, 0, sum);
     }
     for (int c = 0; c < field.channels; ++c) {

@@ -10,8 +10,8 @@
 namespace textonbench {
 namespace {
 
-constexpr int draws = 8;
-constexpr int steps = 20;
+constexpr int phase_draws = 8;
+constexpr int ratio_steps = 20;
 
 /// Skewness and half the excess kurtosis, which scatter alike, and the variance.
 struct Moments {
@@ -31,8 +31,8 @@ Moments moments_of(const std::vector<double>& values) {
   return {{third / n / std::pow(second / n, 1.5), 0.5 * (fourth * n / (second * second) - 3)}, second / n};
 }
 
-constexpr int octaves = 5;
-using Numbers = std::array<Moments, std::size_t{2} * octaves>;
+constexpr int octave_count = 5;
+using Numbers = std::array<Moments, std::size_t{2} * octave_count>;
 
 /// Of the differences of means over neighboring squares of 1, 2, 4, 8 and 16 pixels a side.
 Numbers numbers_of(const Image& u) {
@@ -47,7 +47,7 @@ Numbers numbers_of(const Image& u) {
     }
   }
   Numbers all{};
-  for (int octave = 0; octave < octaves; ++octave) {
+  for (int octave = 0; octave < octave_count; ++octave) {
     const int side = 1 << octave;
     const auto square = [&](int x, int y) {
       return (sum(x + side, y + side) - sum(x, y + side) - sum(x + side, y) + sum(x, y)) / (side * side);
@@ -96,7 +96,7 @@ StructureSuggestion suggest_structure(const Exemplar& exemplar, const WelchOptio
   }
   const Stream stream = Stream(seed).child("lrp suggestion");
   std::vector<Image> random;  // all phases of the block at random
-  for (int d = 0; d < draws; ++d) {
+  for (int d = 0; d < phase_draws; ++d) {
     // White noise has the symmetries that phases need.
     Image white({side, side}, 1);
     for (int y = 0; y < side; ++y) {
@@ -116,17 +116,17 @@ StructureSuggestion suggest_structure(const Exemplar& exemplar, const WelchOptio
   of_random.reserve(random.size());
   StructureSuggestion suggestion;
   for (const Image& image : random) of_random.push_back(numbers_of(image));
-  for (int a = 0; a < draws; ++a) {
-    suggestion.distance += squared_distance(of_random[static_cast<std::size_t>(a)], own) / draws;
+  for (int a = 0; a < phase_draws; ++a) {
+    suggestion.distance += squared_distance(of_random[static_cast<std::size_t>(a)], own) / phase_draws;
     for (int b = 0; b < a; ++b) {
       suggestion.chance +=
           squared_distance(of_random[static_cast<std::size_t>(a)], of_random[static_cast<std::size_t>(b)]) /
-          (draws * (draws - 1) / 2.0);
+          (phase_draws * (phase_draws - 1) / 2.0);
     }
   }
   suggestion.gaussian = suggestion.distance <= 2 * suggestion.chance;
-  for (int step = 0; step <= steps; ++step) {
-    const double ratio = static_cast<double>(step) / steps;
+  for (int step = 0; step <= ratio_steps; ++step) {
+    const double ratio = static_cast<double>(step) / ratio_steps;
     const std::vector<Pixel> bins = strongest_bins(plane, ratio);
     const Image fixed = restrict_to_bins(block, bins);
     double distance = 0;
@@ -136,7 +136,7 @@ StructureSuggestion suggest_structure(const Exemplar& exemplar, const WelchOptio
       for (int y = 0; y < side; ++y) {
         for (int x = 0; x < side; ++x) mixed.at(0, x, y) += fixed.at(0, x, y) - removed.at(0, x, y);
       }
-      distance += squared_distance(numbers_of(mixed), own) / draws;
+      distance += squared_distance(numbers_of(mixed), own) / phase_draws;
     }
     suggestion.ratios.push_back(ratio);
     suggestion.survival.push_back(1 - distance / suggestion.distance);

@@ -8,6 +8,9 @@
 
 namespace textonbench {
 
+/// A pixel in plane units.
+constexpr std::int64_t plane_pixel = std::int64_t{1} << plane_bits;
+
 /// A point of the plane in 2^−22 pixel.
 struct WavePoint {
   std::int64_t x = 0;

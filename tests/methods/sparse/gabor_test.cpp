@@ -87,7 +87,7 @@ TEST(AddGabor, RasterHasTheBitsOfThePoints) {
     Image out({70, 66}, 3);
     add_gabor(field, Seed{6}, raster, out);
     std::vector<WavePoint> points;
-    points.reserve(70 * 66);
+    points.reserve(4620);  // 70 x 66
     for (int y = 0; y < 66; ++y) {
       for (int x = 0; x < 70; ++x) {
         points.push_back({static_cast<std::int64_t>(std::floor((raster.x + raster.step * x) * pixel)),
