@@ -16,8 +16,6 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-constexpr std::int64_t pixel = std::int64_t{1} << plane_bits;
-
 LrpOptions options_of(FixedPhaseOptions fixed) {
   LrpOptions options;
   options.fixed = fixed;
@@ -35,17 +33,17 @@ TEST(PlaceAtRandom, WeightsAddUpAndChangeWithoutJumps) {
     float last = 0;
     for (int i = 0; i < 3000; ++i) {
       // Along a line that crosses borders of both axes, a twentieth of a pixel at a time.
-      const WavePoint point{far + i * pixel / 20, far / 2 - 7 * pixel - i * pixel / 31};
+      const WavePoint point{far + i * plane_pixel / 20, far / 2 - 7 * plane_pixel - i * plane_pixel / 31};
       PlacedPoint places[4];
       const int count = place_at_random(stream, period, point, places);
       float sum = 0, weighted = 0;
       for (int k = 0; k < count; ++k) {
-        EXPECT_EQ((places[k].point.x - point.x) % pixel, 0) << "whole pixels";
+        EXPECT_EQ((places[k].point.x - point.x) % plane_pixel, 0) << "whole pixels";
         EXPECT_GE(places[k].point.x, point.x);
-        EXPECT_LT(places[k].point.x - point.x, period * pixel);
+        EXPECT_LT(places[k].point.x - point.x, period * plane_pixel);
         sum += places[k].weight;
         // A function of the block alone stands for what is looked up.
-        const std::int64_t shift = (places[k].point.x - point.x) / pixel;
+        const std::int64_t shift = (places[k].point.x - point.x) / plane_pixel;
         weighted += places[k].weight * static_cast<float>(shift) / period;
       }
       EXPECT_NEAR(sum, 1, 1e-6);
@@ -126,13 +124,13 @@ TEST(Lrp, RasterOfAStructureIsThePointsThemselves) {
 TEST(FixedPhases, TurbulenceHasMeanZeroAndItsDeviation) {
   const LrpAnalysis analysis = analysis_of({.ratio = 0.3, .turbulence = 5});
   std::vector<WavePoint> points;
-  for (std::int64_t i = 0; i < 4000; ++i) points.push_back({i * 5003 * pixel, -i * 4001 * pixel});
+  for (std::int64_t i = 0; i < 4000; ++i) points.push_back({i * 5003 * plane_pixel, -i * 4001 * plane_pixel});
   std::vector<WavePoint> displaced(points.size());
   analysis.fixed->displace(Seed{7}, points, displaced);
   double mean[2] = {}, square[2] = {}, product = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const double d[2] = {static_cast<double>(displaced[i].x - points[i].x) / pixel,
-                         static_cast<double>(displaced[i].y - points[i].y) / pixel};
+    const double d[2] = {static_cast<double>(displaced[i].x - points[i].x) / plane_pixel,
+                         static_cast<double>(displaced[i].y - points[i].y) / plane_pixel};
     for (int a = 0; a < 2; ++a) mean[a] += d[a] / 4000, square[a] += d[a] * d[a] / 4000;
     product += d[0] * d[1] / 4000;
   }
@@ -231,8 +229,9 @@ TEST(Structure, OfSmallBlocksNeedsAMipMap) {
             mean += structure.image().at(0, (x + i) % 64, (y + j) % 64) / (pixels * pixels);
         }
         float value = 0;
-        filtered.add({x * pixel + pixels * pixel / 2 - pixel / 2, y * pixel + pixels * pixel / 2 - pixel / 2}, 1,
-                     &value);
+        filtered.add({x * plane_pixel + pixels * plane_pixel / 2 - plane_pixel / 2,
+                      y * plane_pixel + pixels * plane_pixel / 2 - plane_pixel / 2},
+                     1, &value);
         error += std::pow(value - mean, 2);
       }
     }

@@ -17,8 +17,6 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-constexpr std::int64_t pixel = std::int64_t{1} << plane_bits;
-
 /// Two bands of unlike kernels and complex colors.
 GaborField test_field(int channels) {
   GaborField field = gabor_field({.frequency = 0.11, .orientation = 20, .directions = 3, .bandwidth = 0.06, .mni = 4});
@@ -38,12 +36,12 @@ std::vector<double> plain_gabor(const GaborField& field, Seed seed, const WavePo
   std::vector<double> sum(static_cast<std::size_t>(field.channels));
   for (std::size_t b = 0; b < field.bands.size(); ++b) {
     const GaborBand& band = field.bands[b];
-    const auto reach = static_cast<std::int64_t>((band.radius + 3) * pixel);
+    const auto reach = static_cast<std::int64_t>((band.radius + 3) * plane_pixel);
     std::vector<GaborImpact> impacts;
     GaborImpacts(field, b, seed).draw({point.x - reach, point.y - reach, point.x + reach, point.y + reach}, impacts);
     for (const GaborImpact& impact : impacts) {
-      const double x = static_cast<double>(point.x - impact.x) / pixel;
-      const double y = static_cast<double>(point.y - impact.y) / pixel;
+      const double x = static_cast<double>(point.x - impact.x) / plane_pixel;
+      const double y = static_cast<double>(point.y - impact.y) / plane_pixel;
       if (x * x + y * y >= band.radius * band.radius) continue;
       const double window = std::exp(-std::numbers::pi * band.bandwidth * band.bandwidth * (x * x + y * y));
       const GaborFrequency& f = band.frequency[impact.entry];
@@ -66,7 +64,8 @@ TEST(SumGabor, IsTheDefinition) {
       std::vector<WavePoint> points;
       points.reserve(60);
       for (std::int64_t i = 0; i < 60; ++i) {
-        points.push_back({static_cast<std::int64_t>(at) * pixel + i * i * pixel / 7, -i * 13 * pixel / 5});
+        points.push_back(
+            {static_cast<std::int64_t>(at) * plane_pixel + i * i * plane_pixel / 7, -i * 13 * plane_pixel / 5});
       }
       std::vector<float> out(points.size() * static_cast<std::size_t>(channels));
       sum_gabor(field, Seed{4}, points, out);
@@ -90,8 +89,8 @@ TEST(AddGabor, RasterHasTheBitsOfThePoints) {
     points.reserve(4620);  // 70 x 66
     for (int y = 0; y < 66; ++y) {
       for (int x = 0; x < 70; ++x) {
-        points.push_back({static_cast<std::int64_t>(std::floor((raster.x + raster.step * x) * pixel)),
-                          static_cast<std::int64_t>(std::floor((raster.y + raster.step * y) * pixel))});
+        points.push_back({static_cast<std::int64_t>(std::floor((raster.x + raster.step * x) * plane_pixel)),
+                          static_cast<std::int64_t>(std::floor((raster.y + raster.step * y) * plane_pixel))});
       }
     }
     std::vector<float> expected(3 * points.size());
@@ -130,7 +129,7 @@ TEST(GaborWindowCorrelation, IsTheIntegral) {
 TEST(Gabor, HasUnitVarianceForEveryPhaseWeightAndProcess) {
   std::vector<WavePoint> points;
   points.reserve(10000);
-  for (std::int64_t i = 0; i < 10000; ++i) points.push_back({i % 100 * 97 * pixel, i / 100 * 89 * pixel});
+  for (std::int64_t i = 0; i < 10000; ++i) points.push_back({i % 100 * 97 * plane_pixel, i / 100 * 89 * plane_pixel});
   int laws = 0;
   for (const ImpactProcess process :
        {ImpactProcess::stratified, ImpactProcess::signed_poisson, ImpactProcess::poisson}) {
@@ -166,7 +165,7 @@ TEST(Gabor, HasUnitVarianceForEveryPhaseWeightAndProcess) {
 TEST(Gabor, KurtosisFallsWithTheImpacts) {
   std::vector<WavePoint> points;
   points.reserve(40000);
-  for (std::int64_t i = 0; i < 40000; ++i) points.push_back({i % 200 * 61 * pixel, i / 200 * 67 * pixel});
+  for (std::int64_t i = 0; i < 40000; ++i) points.push_back({i % 200 * 61 * plane_pixel, i / 200 * 67 * plane_pixel});
   for (const double mni : {6.0, 20.0}) {
     const GaborField field = gabor_field(
         {.frequency = 0.2, .directions = 1, .bandwidth = 0.12, .mni = mni, .process = ImpactProcess::signed_poisson});

@@ -13,13 +13,12 @@
 namespace textonbench {
 namespace {
 
-constexpr int side = 32;
-constexpr std::int64_t pixel = std::int64_t{1} << plane_bits;
+constexpr int structure_side = 32;
 
-Image block(int channels) {
-  Image image = test_texture({side, side}, channels);
+Image block_of_texture(int channels) {
+  Image image = test_texture({structure_side, structure_side}, channels);
   for (int c = 0; c < channels; ++c) {
-    for (int y = 0; y < side; ++y) {
+    for (int y = 0; y < structure_side; ++y) {
       for (float& v : image.row(c, y)) v -= 0.5F;
     }
   }
@@ -27,21 +26,23 @@ Image block(int channels) {
 }
 
 PowerPlane power_of(const Image& image) {
-  const WelchSpectrum spectrum(image, {.side = side, .taper = Taper::none});
-  PowerPlane plane(side);
-  for (const Pixel& bin : plane.half()) plane.set(bin.x, bin.y, spectrum.power(bin.x, (bin.y + side) % side));
+  const WelchSpectrum spectrum(image, {.side = structure_side, .taper = Taper::none});
+  PowerPlane plane(structure_side);
+  for (const Pixel& bin : plane.half())
+    plane.set(bin.x, bin.y, spectrum.power(bin.x, (bin.y + structure_side) % structure_side));
   return plane;
 }
 
 std::vector<float> value_at(const Structure& structure, double x, double y) {
   std::vector<float> out(static_cast<std::size_t>(structure.image().channels()));
-  structure.add({static_cast<std::int64_t>(std::floor(x * pixel)), static_cast<std::int64_t>(std::floor(y * pixel))}, 1,
-                out.data());
+  structure.add(
+      {static_cast<std::int64_t>(std::floor(x * plane_pixel)), static_cast<std::int64_t>(std::floor(y * plane_pixel))},
+      1, out.data());
   return out;
 }
 
 TEST(StrongestBins, HoldTheirPartOfThePower) {
-  const PowerPlane plane = power_of(block(3));
+  const PowerPlane plane = power_of(block_of_texture(3));
   EXPECT_TRUE(strongest_bins(plane, 0).empty());
   EXPECT_EQ(strongest_bins(plane, 1).size(), plane.half().size());
   for (const double ratio : {0.1, 0.5, 0.9}) {
@@ -61,14 +62,15 @@ TEST(StrongestBins, HoldTheirPartOfThePower) {
 
 TEST(Structure, OfAllBinsIsTheBlock) {
   for (const int channels : {1, 3}) {
-    const Image image = block(channels);
+    const Image image = block_of_texture(channels);
     const auto bins = strongest_bins(power_of(image), 1);
     const Structure structure(restrict_to_bins(image, bins), bins, {});
-    EXPECT_EQ(structure.block_side(), side);
+    EXPECT_EQ(structure.block_side(), structure_side);
     EXPECT_EQ(structure.cosines(), static_cast<int>(bins.size()));
-    for (int y = 0; y < side; ++y) {
-      for (int x = 0; x < side; ++x) {
-        const auto value = value_at(structure, x, y), far = value_at(structure, x + 3.0 * side, y - 1e9 * side);
+    for (int y = 0; y < structure_side; ++y) {
+      for (int x = 0; x < structure_side; ++x) {
+        const auto value = value_at(structure, x, y),
+                   far = value_at(structure, x + 3.0 * structure_side, y - 1e9 * structure_side);
         for (int c = 0; c < channels; ++c) {
           ASSERT_NEAR(value[static_cast<std::size_t>(c)], image.at(c, x, y), 1e-5);
           ASSERT_EQ(value[static_cast<std::size_t>(c)], far[static_cast<std::size_t>(c)]) << "it repeats";
@@ -79,30 +81,30 @@ TEST(Structure, OfAllBinsIsTheBlock) {
 }
 
 TEST(Structure, BetweenPixelsIsTheFourierSeries) {
-  const Image image = block(1);
+  const Image image = block_of_texture(1);
   const auto bins = strongest_bins(power_of(image), 0.6);
   const Structure structure(restrict_to_bins(image, bins), bins, {});
   for (const auto& [px, py] : {std::pair{3.25, 7.75}, std::pair{30.9, -2.4}}) {
     double expected = 0;
     for (const Pixel& bin : bins) {
       std::complex<double> z = 0;
-      for (int y = 0; y < side; ++y) {
-        for (int x = 0; x < side; ++x) {
+      for (int y = 0; y < structure_side; ++y) {
+        for (int x = 0; x < structure_side; ++x) {
           z += static_cast<double>(image.at(0, x, y)) *
-               std::polar(1.0, 2 * std::numbers::pi * (bin.x * (px - x) + bin.y * (py - y)) / side);
+               std::polar(1.0, 2 * std::numbers::pi * (bin.x * (px - x) + bin.y * (py - y)) / structure_side);
         }
       }
-      expected += PowerPlane(side).multiplicity(bin) * z.real() / (side * side);
+      expected += PowerPlane(structure_side).multiplicity(bin) * z.real() / (structure_side * structure_side);
     }
     EXPECT_NEAR(value_at(structure, px, py).front(), expected, 1e-5);
   }
 }
 
 TEST(Structure, OfFewCosinesIsCutUntilItIsPrecise) {
-  const Image image = block(3);
+  const Image image = block_of_texture(3);
   const auto bins = strongest_bins(power_of(image), 0.8);
   const Image wanted = restrict_to_bins(image, bins);
-  int last = side + 1;
+  int last = structure_side + 1;
   for (const int cosines : {400, 40, 8, 2}) {
     const Structure structure(wanted, bins, {.cosines = cosines});
     EXPECT_LE(structure.deviation(), 1. / 256);
@@ -110,13 +112,13 @@ TEST(Structure, OfFewCosinesIsCutUntilItIsPrecise) {
     EXPECT_LE(structure.cosines(), cosines);
     last = structure.block_side();
     double sum = 0;
-    for (int y = 0; y < side; ++y) {
-      for (int x = 0; x < side; ++x) {
+    for (int y = 0; y < structure_side; ++y) {
+      for (int x = 0; x < structure_side; ++x) {
         const auto value = value_at(structure, x, y);
         for (int c = 0; c < 3; ++c) sum += std::abs(value[static_cast<std::size_t>(c)] - wanted.at(c, x, y));
       }
     }
-    EXPECT_NEAR(sum / (3 * side * side), structure.deviation(), 1e-6);
+    EXPECT_NEAR(sum / (3 * structure_side * structure_side), structure.deviation(), 1e-6);
   }
   const Structure pixels(wanted, bins, {.cosines = 1, .precision = 1e-6});
   EXPECT_EQ(pixels.block_side(), 1);
@@ -126,10 +128,10 @@ TEST(Structure, OfFewCosinesIsCutUntilItIsPrecise) {
 /// Steps of a hundredth of a pixel move a continuous structure by no more than its steepest slope tells; a jump at the
 /// border of blocks would be many times that.
 TEST(Structure, IsContinuousAcrossBlocks) {
-  const Image image = block(1);
+  const Image image = block_of_texture(1);
   const auto bins = strongest_bins(power_of(image), 0.8);
   const Structure structure(restrict_to_bins(image, bins), bins, {.cosines = 8});
-  ASSERT_LT(structure.block_side(), side);
+  ASSERT_LT(structure.block_side(), structure_side);
   double most = 0, mean = 0;
   float last = value_at(structure, -1, 5.3).front();
   constexpr int steps = 3400;
