@@ -90,6 +90,8 @@ std::span<const MetricEntry> lrp_metrics() {
                     "mean |dB| of octaves, by turbulence and placement", Better::lower),
       estimate_row("lrp_welch_ratio", "Error of Welch's estimate over that of a periodogram", lrp_welch_ratio,
                    "of the model's own noise", Better::lower),
+      estimate_row("lrp_series_error", "Noise of wide windows against a Fourier series", lrp_series_error,
+                   "root-mean-square difference a period away over the deviation", Better::lower),
       estimate_row("lrp_noise_filter_error", "Clamped noise against means over pixels", lrp_noise_filter_error,
                    "pixels of 8 x 8", Better::lower),
       estimate_row("lrp_noise_aliasing_error", "Noise at points against means over pixels", lrp_noise_aliasing_error,

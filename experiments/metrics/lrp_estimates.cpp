@@ -122,6 +122,28 @@ std::optional<double> lrp_welch_ratio(const Model& model, const Target& target, 
   return std::sqrt(averaged / single);
 }
 
+std::optional<double> lrp_series_error(const Model& model, const Target&, const Domain&) {
+  const LrpAnalysis* lrp = lrp_analysis_of(model);
+  if (lrp == nullptr || lrp->field.layers.empty()) return std::nullopt;
+  WaveField field = lrp->field;
+  for (WaveLayer& layer : field.layers) layer.spacing *= 10000;
+  const std::int64_t period = lrp->spectrum.side() * plane_pixel;
+  std::vector<WavePoint> points;
+  points.reserve(1024);
+  for (std::int64_t i = 0; i < 512; ++i) {
+    const WavePoint& here = points.emplace_back(WavePoint{i * 7 * plane_pixel / 3, i * i % 301 * plane_pixel / 2});
+    points.push_back({here.x + period, here.y - 2 * period});
+  }
+  std::vector<float> values(points.size() * static_cast<std::size_t>(field.channels));
+  sum_waves(field, Seed{1}, points, false, values);
+  double difference = 0, power = 0;
+  for (std::size_t i = 0; i < values.size(); i += 2) {
+    difference += std::pow(static_cast<double>(values[i + 1]) - static_cast<double>(values[i]), 2);
+    power += double{values[i]} * values[i];
+  }
+  return std::sqrt(difference / power);
+}
+
 std::optional<double> lrp_noise_filter_error(const Model& model, const Target&, const Domain&) {
   return noise_error(model, footprint);
 }

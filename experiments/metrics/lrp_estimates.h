@@ -11,6 +11,9 @@ namespace textonbench {
 /// Error of Welch's estimate over that of a single periodogram of the same side: sqrt(Σ (P̂ − P)² / Σ P²), of samples of
 /// the exemplar's size of the model's own noise, whose spectrum P is known; of the first channel.
 std::optional<double> lrp_welch_ratio(const Model& model, const Target& target, const Domain& domain);
+/// Root-mean-square difference between the noise and itself a period of its bins away, over its deviation, its windows
+/// being ten thousand times as wide: zero of a Fourier series.
+std::optional<double> lrp_series_error(const Model& model, const Target& target, const Domain& domain);
 /// Root-mean-square distance of values from means over pixels of 8 x 8, over the standard deviation of the values: of
 /// the noise with its frequencies clamped, and as it is.
 std::optional<double> lrp_noise_filter_error(const Model& model, const Target& target, const Domain& domain);

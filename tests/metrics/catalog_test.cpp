@@ -48,9 +48,9 @@ TEST(MetricCatalog, NamesAndOrderAreThoseThatScriptsKnow) {
           "lrp_coverage", "lrp_calls", "lrp_calls_ratio", "lrp_copy_error", "lrp_printed_copy_error",
           "lrp_structure_deviation", "lrp_block_side", "lrp_table_entries", "lrp_distortion_jump",
           "lrp_swapped_distortion_jump", "lrp_jump", "lrp_fixed_time_ratio", "lrp_placement_time_ratio",
-          "lrp_radial_change", "lrp_welch_ratio", "lrp_noise_filter_error", "lrp_noise_aliasing_error",
-          "lrp_structure_filter_error", "lrp_structure_clamp_error", "lrp_structure_aliasing_error",
-          "lrp_structure_survival", "lrp_suggested_structure"));
+          "lrp_radial_change", "lrp_welch_ratio", "lrp_series_error", "lrp_noise_filter_error",
+          "lrp_noise_aliasing_error", "lrp_structure_filter_error", "lrp_structure_clamp_error",
+          "lrp_structure_aliasing_error", "lrp_structure_survival", "lrp_suggested_structure"));
 }
 
 TEST(MetricCatalog, EveryEntryIsDescribedAndCanBeMeasuredAtItsLevel) {

@@ -75,6 +75,7 @@ TEST(LrpEstimates, AveragedPeriodogramsAndClampedFrequenciesAreBetter) {
   const Exemplar exemplar = test_exemplar({80, 70}, 1);
   const LrpOptions options = with({.ratio = 0.3});
   EXPECT_LT(measure(lrp_welch_ratio, {}, exemplar).value(), 1);
+  EXPECT_LT(measure(lrp_series_error, {}, exemplar).value(), 0.01);
   EXPECT_LT(measure(lrp_noise_filter_error, options, exemplar).value(),
             measure(lrp_noise_aliasing_error, options, exemplar).value());
   EXPECT_LE(measure(lrp_structure_filter_error, options, exemplar).value(),
