@@ -10,6 +10,7 @@
 #include "methods/sparse/lrp.h"
 #include "methods/sparse/lrp_suggestion.h"
 #include "methods/spectral/adsn.h"
+#include "tests/metrics/metric_fixture.h"
 #include "tests/texture.h"
 
 namespace textonbench {
@@ -102,17 +103,6 @@ TEST(StructureSuggestion, TellsNoiseFromSpots) {
   EXPECT_NEAR(of_spots.survival.back(), 1, 1e-6);
   EXPECT_NEAR(measure(lrp_structure_survival, with({.ratio = 1}), spots).value(), 1, 1e-6);
   EXPECT_EQ(measure(lrp_suggested_structure, {}, spots), of_spots.ratio);
-}
-
-Image white_noise(Extent size, int channels, std::uint64_t seed) {
-  Image white(size, channels);
-  for (int c = 0; c < channels; ++c) {
-    for (int y = 0; y < size.height; ++y) {
-      fill_normal(Stream(Seed{seed}).child(static_cast<std::uint64_t>(c)), static_cast<std::uint64_t>(y), 0,
-                  white.row(c, y));
-    }
-  }
-  return white;
 }
 
 /// Neighboring patches share six of seven columns, so that even in other white noise their nearest ones often are
