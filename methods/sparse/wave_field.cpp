@@ -8,7 +8,11 @@ namespace {
 
 std::int64_t floor_divide(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
 
-std::int64_t part_of(std::int64_t length, std::uint32_t word) { return (length * (word >> 8U)) >> 24U; }
+/// floor(length (word >> 8) / 2^24), without overflow for lengths up to 2^62.
+std::int64_t part_of(std::int64_t length, std::uint32_t word) {
+  const std::int64_t part = word >> 8U;
+  return (length >> 24U) * part + (((length & 0xFFFFFF) * part) >> 24U);
+}
 
 /// The waves of a cell by its words, two of each.
 __attribute__((target_clones("default", "avx2", "avx512f"))) void make_waves(
