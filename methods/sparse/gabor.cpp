@@ -72,8 +72,7 @@ class GaborNoise final : public Model, public Gaussian, public Procedural {
     for (const GaborBand& band : field_.bands) {
       sum.model_bytes += band.bytes();
       // Of each kernel that reaches a pixel two multiplications and additions a channel; columns and rows are few.
-      const double impacts = band.intensity * std::numbers::pi * band.radius * band.radius;
-      sum.operations_per_pixel += impacts * 4 * field_.channels;
+      sum.operations_per_pixel += band.intensity * band.window.area() * 4 * field_.channels;
     }
     return sum;
   }
@@ -114,7 +113,7 @@ std::optional<std::string> refuse_gabor(const GaborOptions& options) {
     return fmt::format("gabor with an orientation of {} degrees: expected a finite number", options.orientation);
   }
   if (!(in_range(options.cut, 1e-6, 0.5) && options.bandwidth > 0 &&
-        in_range(gabor_radius(options.bandwidth, options.cut), 1, widest_kernel))) {
+        in_range(GaborWindow::round(options.bandwidth, options.cut).half_width(), 1, widest_kernel))) {
     return fmt::format(
         "gabor of bandwidth {} cut at {}: expected a cut in [1e-6, 0.5] and kernels of a radius of 1 to 512 pixels",
         options.bandwidth, options.cut);
@@ -137,17 +136,16 @@ GaborField gabor_field(const GaborOptions& options) {
   GaborField field{
       .channels = 1, .process = options.process, .phase = options.phase, .weight = options.weight, .bands = {}};
   GaborBand& band = field.bands.emplace_back();
-  band.bandwidth = options.bandwidth;
-  band.radius = gabor_radius(options.bandwidth, options.cut);
-  const double wanted = options.mni / (std::numbers::pi * band.radius * band.radius);
+  band.window = GaborWindow::round(options.bandwidth, options.cut);
+  band.cell = band.window.half_width();
   // Stratified cells are rounded to 1/1024 pixel.
-  band.intensity = ImpactGrid(options.process, wanted, band.radius, 1).intensity();
+  band.intensity = ImpactGrid(options.process, options.mni / band.window.area(), band.cell, 1).intensity();
   const int n = options.directions;
   for (int i = 0; i < n; ++i) {
     const double angle = std::numbers::pi * (options.orientation / 180 + static_cast<double>(i) / n);
     band.frequency.push_back({options.frequency * std::cos(angle), options.frequency * std::sin(angle)});
-    band.chance.push_back(static_cast<std::uint32_t>(std::min(std::floor((i + 1.0) / n * 0x1p32), 0x1p32 - 1)));
   }
+  band.draw_by(std::vector<double>(band.frequency.size(), 1));
   band.color.assign(static_cast<std::size_t>(n), 1);
   const auto amplitude = static_cast<float>(1 / std::sqrt(gabor_covariance(field)(0, 0)));
   std::ranges::fill(band.color, std::complex<float>(amplitude));

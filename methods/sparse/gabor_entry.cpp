@@ -39,19 +39,19 @@ std::unique_ptr<Model> analyze_gabor(const Problem& problem, const Params& param
   GaborBand& band = field.bands.front();
   const std::vector<GaborFrequency> directions = std::move(band.frequency);
   const std::complex<float> amplitude = deviation * band.color.front();
-  band.frequency.clear(), band.chance.clear(), band.color.clear();
-  double upto = 0;
+  band.frequency.clear(), band.color.clear();
+  std::vector<double> weights;
   for (int axis = field.channels - 1; axis >= 0; --axis) {
     if (variance[axis] <= 1e-12 * variance.sum()) continue;
     for (const GaborFrequency& direction : directions) {
-      upto += variance[axis] / variance.sum() / static_cast<double>(directions.size());
       band.frequency.push_back(direction);
-      band.chance.push_back(static_cast<std::uint32_t>(std::min(std::floor(upto * 0x1p32), 0x1p32 - 1)));
+      weights.push_back(variance[axis]);
       for (int c = 0; c < field.channels; ++c) {
         band.color.push_back(amplitude * static_cast<float>(axes.eigenvectors()(c, axis)));
       }
     }
   }
+  band.draw_by(weights);
   return make_gabor(std::move(field), colors.mean);
 }
 

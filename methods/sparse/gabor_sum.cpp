@@ -17,14 +17,13 @@ constexpr int gabor_tile = 64;
 
 std::int64_t plane_coordinate(double at) { return static_cast<std::int64_t>(std::floor(at * units_a_pixel)); }
 
-/// g along one axis, from a table: exp(−π a² t²), |t| <= R, within 3e-7.
+/// exp(−π c t²) from a table, |t| <= R, within 3e-7.
 class GaussianTable {
  public:
-  explicit GaussianTable(const GaborBand& band) : scale_(nodes / (band.radius * units_a_pixel)), values_(nodes + 2) {
+  GaussianTable(double coefficient, double reach) : scale_(nodes / (reach * units_a_pixel)), values_(nodes + 2) {
     for (int i = 0; i < nodes + 2; ++i) {
-      const double t = band.radius * i / nodes;
-      values_[static_cast<std::size_t>(i)] =
-          static_cast<float>(std::exp(-std::numbers::pi * std::pow(band.bandwidth * t, 2)));
+      const double t = reach * i / nodes;
+      values_[static_cast<std::size_t>(i)] = static_cast<float>(std::exp(-std::numbers::pi * coefficient * t * t));
     }
   }
   /// `distance` in 2^−22 pixel.
@@ -48,13 +47,12 @@ struct AxisPart {
 };
 
 /// `frequency` in 2^−32 turn a pixel, `distance` in 2^−22 pixel, at most 512 pixels.
-AxisPart axis_part(const GaussianTable& table, std::int64_t frequency, std::int64_t distance, std::uint32_t phase) {
+AxisPart axis_wave(std::int64_t frequency, std::int64_t distance, std::uint32_t phase) {
   constexpr int dropped = 2;
   const std::int64_t turns = (frequency * (distance >> dropped)) >> (plane_bits - dropped);
-  float cosine = 0, sine = 0;
-  portable::cos_sin(static_cast<std::uint32_t>(turns) + phase, cosine, sine);
-  const float window = table.at(distance);
-  return {window * cosine, window * sine};
+  AxisPart wave;
+  portable::cos_sin(static_cast<std::uint32_t>(turns) + phase, wave.real, wave.imaginary);
+  return wave;
 }
 
 std::int64_t turns_a_pixel(double frequency) { return std::llround(frequency * 0x1p32); }
@@ -70,72 +68,91 @@ AxisPart times_color(const AxisPart& row, const std::complex<float>& color, floa
           weight * (color.real() * row.imaginary + color.imag() * row.real)};
 }
 
-__attribute__((target_clones("default", "avx2", "avx512f"))) void add_row(const AxisPart& row, const float* real,
-                                                                          const float* imaginary, int count,
-                                                                          float* out) {
-  for (int x = 0; x < count; ++x) out[x] += row.real * real[x] - row.imaginary * imaginary[x];
+__attribute__((target_clones("default", "avx2", "avx512f"))) void add_row(const AxisPart& row, const AxisPart* columns,
+                                                                          int count, float* out) {
+  for (int x = 0; x < count; ++x) out[x] += row.real * columns[x].real - row.imaginary * columns[x].imaginary;
 }
 
-/// A kernel on a part of a raster whose coordinates are x and y.
+/// Kernels on a part of a raster whose coordinates are x and y. Along a row the window is exp(−π xx (dx + shear dy)²)
+/// by a factor of the row, so where there is no shear columns have one factor for all rows.
 class KernelRaster {
  public:
   KernelRaster(const GaborField& field, const GaborBand& band)
-      : channels_(field.channels), band_(band), table_(band), reach_(plane_coordinate(band.radius) + 1) {}
+      : channels_(field.channels),
+        band_(band),
+        shear_(band.window.xy / band.window.xx),
+        across_(band.window.determinant() / band.window.xx),
+        columns_(band.window.xx, std::sqrt(band.window.limit() / band.window.xx)),
+        rows_(across_, band.window.half_height()),
+        row_reach_(plane_coordinate(std::sqrt(band.window.limit() / band.window.xx)) + 1),
+        reach_x_(plane_coordinate(band.window.half_width()) + 1),
+        reach_y_(plane_coordinate(band.window.half_height()) + 1) {}
 
-  std::int64_t reach() const { return reach_; }
+  std::int64_t reach_x() const { return reach_x_; }
+  std::int64_t reach_y() const { return reach_y_; }
 
-  /// Adds it to `out`, whose pixel (left + i, top + j) is at (x[i], y[j]).
-  void add(const GaborImpact& impact, const std::vector<std::int64_t>& x, const std::vector<std::int64_t>& y, int left,
-           int top, Image& out) {
-    const auto from = std::ranges::upper_bound(x, impact.x - reach_),
-               to = std::ranges::lower_bound(x, impact.x + reach_);
-    const auto above = std::ranges::upper_bound(y, impact.y - reach_);
-    const auto below = std::ranges::lower_bound(y, impact.y + reach_);
+  /// Adds it to `out`, whose pixel (i, j) is at (x[i], y[j]).
+  void add(const GaborImpact& impact, const std::vector<std::int64_t>& x, const std::vector<std::int64_t>& y,
+           Image& out) {
+    const auto from = std::ranges::upper_bound(x, impact.x - reach_x_),
+               to = std::ranges::lower_bound(x, impact.x + reach_x_);
+    const auto above = std::ranges::upper_bound(y, impact.y - reach_y_),
+               below = std::ranges::lower_bound(y, impact.y + reach_y_);
     if (from >= to || above >= below) return;
     const GaborFrequency& f = band_.frequency[impact.entry];
-    const auto columns = static_cast<std::size_t>(to - from);
-    real_.resize(columns), imaginary_.resize(columns), squares_.resize(columns);
     const std::int64_t along_x = turns_a_pixel(f.x), along_y = turns_a_pixel(f.y);
+    const auto columns = static_cast<std::size_t>(to - from);
+    wave_.resize(columns), part_.resize(columns), forms_.resize(columns);
     for (std::size_t i = 0; i < columns; ++i) {
-      const std::int64_t distance = from[static_cast<std::ptrdiff_t>(i)] - impact.x;
-      squares_[i] = squared_pixel_distance(distance);
-      const AxisPart part = axis_part(table_, along_x, clamped(distance), 0);
-      real_[i] = part.real, imaginary_[i] = part.imaginary;
+      wave_[i] =
+          axis_wave(along_x, std::clamp(from[static_cast<std::ptrdiff_t>(i)] - impact.x, -reach_x_, reach_x_), 0);
     }
+    if (shear_ == 0) set_windows(&*from, impact.x);
     const std::complex<float>* color =
         band_.color.data() + std::size_t{impact.entry} * static_cast<std::size_t>(channels_);
     for (auto row = above; row < below; ++row) {
       const std::int64_t distance = *row - impact.y;
-      const double left_over = band_.radius * band_.radius - squared_pixel_distance(distance);
+      if (shear_ != 0) set_windows(&*from, impact.x - std::llround(shear_ * static_cast<double>(distance)));
+      const double left_over = band_.window.limit() - across_ * squared_pixel_distance(distance);
       std::size_t first = 0, end = columns;
-      while (first < end && squares_[first] >= left_over) ++first;
-      while (end > first && squares_[end - 1] >= left_over) --end;
+      while (first < end && forms_[first] >= left_over) ++first;
+      while (end > first && forms_[end - 1] >= left_over) --end;
       if (first == end) continue;
-      const AxisPart part = axis_part(table_, along_y, clamped(distance), impact.phase);
-      const auto y_out = top + static_cast<int>(row - y.begin());
-      const auto x_out = static_cast<std::size_t>(left) + static_cast<std::size_t>(from - x.begin()) + first;
+      AxisPart part = axis_wave(along_y, distance, impact.phase);
+      const float window = rows_.at(std::clamp(distance, 1 - reach_y_, reach_y_ - 1));
+      part = {window * part.real, window * part.imaginary};
+      const auto y_out = static_cast<int>(row - y.begin());
+      const auto x_out = static_cast<std::size_t>(from - x.begin()) + first;
       for (int c = 0; c < channels_; ++c) {
-        add_row(times_color(part, color[c], impact.weight), real_.data() + first, imaginary_.data() + first,
-                static_cast<int>(end - first), out.row(c, y_out).data() + x_out);
+        add_row(times_color(part, color[c], impact.weight), part_.data() + first, static_cast<int>(end - first),
+                out.row(c, y_out).data() + x_out);
       }
     }
   }
 
  private:
-  /// Distances within the table: those a rounding beyond it are cut off by the disc anyway.
-  std::int64_t clamped(std::int64_t distance) const { return std::clamp(distance, 1 - reach_, reach_ - 1); }
+  /// Windows of the columns, and the forms' parts that are theirs, around a middle in 2^−22 pixel.
+  void set_windows(const std::int64_t* x, std::int64_t middle) {
+    for (std::size_t i = 0; i < wave_.size(); ++i) {
+      const std::int64_t distance = x[i] - middle;
+      forms_[i] = band_.window.xx * squared_pixel_distance(distance);
+      const float window = columns_.at(std::clamp(distance, 1 - row_reach_, row_reach_ - 1));
+      part_[i] = {window * wave_[i].real, window * wave_[i].imaginary};
+    }
+  }
 
   int channels_;
   const GaborBand& band_;
-  GaussianTable table_;
-  std::int64_t reach_;
-  std::vector<float> real_, imaginary_;
-  std::vector<double> squares_;
+  double shear_, across_;
+  GaussianTable columns_, rows_;
+  std::int64_t row_reach_, reach_x_, reach_y_;
+  std::vector<AxisPart> wave_, part_;
+  std::vector<double> forms_;
 };
 
 PlaneRectangle with_margin(std::int64_t left, std::int64_t top, std::int64_t right, std::int64_t bottom,
-                           std::int64_t reach) {
-  return {left - reach, top - reach, right + reach + 1, bottom + reach + 1};
+                           const KernelRaster& kernel) {
+  return {left - kernel.reach_x(), top - kernel.reach_y(), right + kernel.reach_x() + 1, bottom + kernel.reach_y() + 1};
 }
 
 }  // namespace
@@ -159,8 +176,8 @@ void sum_gabor(const GaborField& field, Seed seed, std::span<const WavePoint> po
       for (std::size_t c = 0; c < channels; ++c) value.at(static_cast<int>(c), 0, 0) = 0;
       for (std::size_t b = 0; b < kernels.size(); ++b) {
         impacts.clear();
-        drawers[b].draw(with_margin(x[0], y[0], x[0], y[0], kernels[b].reach()), impacts);
-        for (const GaborImpact& impact : impacts) kernels[b].add(impact, x, y, 0, 0, value);
+        drawers[b].draw(with_margin(x[0], y[0], x[0], y[0], kernels[b]), impacts);
+        for (const GaborImpact& impact : impacts) kernels[b].add(impact, x, y, value);
       }
       for (std::size_t c = 0; c < channels; ++c) out[c * points.size() + i] = value.at(static_cast<int>(c), 0, 0);
     }
@@ -184,8 +201,8 @@ void add_gabor(const GaborField& field, Seed seed, const WaveRaster& raster, Ima
     for (std::size_t b = 0; b < field.bands.size(); ++b) {
       KernelRaster kernel(field, field.bands[b]);
       impacts.clear();
-      GaborImpacts(field, b, seed).draw(with_margin(x.front(), y.front(), x.back(), y.back(), kernel.reach()), impacts);
-      for (const GaborImpact& impact : impacts) kernel.add(impact, x, y, 0, 0, sum);
+      GaborImpacts(field, b, seed).draw(with_margin(x.front(), y.front(), x.back(), y.back(), kernel), impacts);
+      for (const GaborImpact& impact : impacts) kernel.add(impact, x, y, sum);
     }
     for (int c = 0; c < field.channels; ++c) {
       for (int j = 0; j < sum.height(); ++j) {
