@@ -7,3 +7,4 @@ pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3f fftw3)
 # By pkg-config: the CMake package also insists on OpenImageIO's command-line tools, and so on Qt.
 pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO>=2.4)
 find_package(tinyobjloader REQUIRED)
+find_package(Ceres REQUIRED)

@@ -36,7 +36,8 @@ std::span<const MethodEntry> method_catalog() {
                                                    mixing_entry(),
                                                    inpainting_entry(),
                                                    lrp_entry(),
-                                                   gabor_entry()};
+                                                   gabor_entry(),
+                                                   gabor_by_example_entry()};
   return entries;
 }
 

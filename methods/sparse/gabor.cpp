@@ -23,7 +23,8 @@ bool is_in_reach(const Point2& p) {
 
 class GaborNoise final : public Model, public Gaussian, public Procedural {
  public:
-  GaborNoise(GaborField field, std::vector<double> mean) : field_(std::move(field)), mean_(std::move(mean)) {}
+  GaborNoise(GaborField field, std::vector<double> mean, std::optional<Convergence> convergence)
+      : field_(std::move(field)), mean_(std::move(mean)), convergence_(std::move(convergence)) {}
 
   const GaborField& field() const { return field_; }
 
@@ -35,6 +36,7 @@ class GaborNoise final : public Model, public Gaussian, public Procedural {
     return out;
   }
 
+  const Convergence* convergence() const override { return convergence_ ? &*convergence_ : nullptr; }
   const Gaussian* gaussian() const override { return this; }
   std::vector<double> mean() const override { return mean_; }
   CrossSpectrum spectrum(Extent grid) const override { return gabor_spectrum(field_, grid); }
@@ -80,6 +82,7 @@ class GaborNoise final : public Model, public Gaussian, public Procedural {
  private:
   GaborField field_;
   std::vector<double> mean_;
+  std::optional<Convergence> convergence_;
 };
 
 }  // namespace
@@ -152,8 +155,8 @@ GaborField gabor_field(const GaborOptions& options) {
   return field;
 }
 
-std::unique_ptr<Model> make_gabor(GaborField field, std::vector<double> mean) {
-  return std::make_unique<GaborNoise>(std::move(field), std::move(mean));
+std::unique_ptr<Model> make_gabor(GaborField field, std::vector<double> mean, std::optional<Convergence> convergence) {
+  return std::make_unique<GaborNoise>(std::move(field), std::move(mean), std::move(convergence));
 }
 
 const GaborField* gabor_field_of(const Model& model) {

@@ -35,13 +35,15 @@ std::optional<std::string> refuse_gabor_domain(const Domain& domain);
 /// Of unit variance, gray. Throws std::invalid_argument where refuse_gabor() has a reason.
 GaborField gabor_field(const GaborOptions& options);
 
-/// A noise of bands, plus a mean: procedural, with a closed-form spectrum.
-std::unique_ptr<Model> make_gabor(GaborField field, std::vector<double> mean);
+/// A noise of bands, plus a mean: procedural, with a closed-form spectrum. `convergence` of what fitted it.
+std::unique_ptr<Model> make_gabor(GaborField field, std::vector<double> mean,
+                                  std::optional<Convergence> convergence = std::nullopt);
 
 /// The field of such a model; null for another one.
 const GaborField* gabor_field_of(const Model& model);
 
-/// Entry of the catalogue.
+/// Entries of the catalogue.
 MethodEntry gabor_entry();
+MethodEntry gabor_by_example_entry();
 
 }  // namespace textonbench
