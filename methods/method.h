@@ -123,6 +123,8 @@ class Model {
   /// Of a model that an iteration fitted.
   virtual const Convergence* convergence() const { return nullptr; }
   virtual Footprint footprint(const Domain& domain) const = 0;
+  /// What a user should know of its samples on a domain, in words: that they are aliased, or the fit did not converge.
+  virtual std::optional<std::string> warning(const Domain& /*domain*/) const { return std::nullopt; }
 };
 
 /// One row of the catalogue.

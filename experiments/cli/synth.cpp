@@ -130,6 +130,10 @@ int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
   const std::unique_ptr<Context> context = options.on_gpu ? options.gpu.make_context() : nullptr;
   const Fitted fitted = from_file ? read_fitted(options) : fit_to_exemplar(asked, globals.quiet);
   const Domain& domain = fitted.domain;
+  if (const auto warning = fitted.model->warning(domain)) {
+    fmt::print(stderr, "textonbench: warning: {}: {}\n", from_file ? options.model_file.string() : asked.method,
+               *warning);
+  }
   std::vector<std::filesystem::path> files{options.output};
   const Seed seed = sample_seed(asked.seed, 0);
   std::unique_ptr<Renderer> renderer;

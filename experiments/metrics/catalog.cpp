@@ -9,6 +9,7 @@
 #include "experiments/metrics/color_covariance.h"
 #include "experiments/metrics/cramer_von_mises.h"
 #include "experiments/metrics/frame_metrics.h"
+#include "experiments/metrics/gabor_metrics.h"
 #include "experiments/metrics/kriging_catalog.h"
 #include "experiments/metrics/lrp_catalog.h"
 #include "experiments/metrics/metric.h"
@@ -377,8 +378,8 @@ constexpr std::array general_metrics{
 std::span<const MetricEntry> metric_catalog() {
   static const std::vector<MetricEntry> catalog = [] {
     std::vector<MetricEntry> entries(general_metrics.begin(), general_metrics.end());
-    for (const std::span<const MetricEntry> more :
-         {spot_identity_metrics(), spline_identity_metrics(), frame_metrics(), kriging_metrics(), lrp_metrics()}) {
+    for (const std::span<const MetricEntry> more : {spot_identity_metrics(), spline_identity_metrics(), frame_metrics(),
+                                                    kriging_metrics(), lrp_metrics(), gabor_metrics()}) {
       entries.insert(entries.end(), more.begin(), more.end());
     }
     return entries;

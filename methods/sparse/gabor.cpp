@@ -21,6 +21,24 @@ bool is_in_reach(const Point2& p) {
   return std::abs(p.x) <= furthest_impact_place && std::abs(p.y) <= furthest_impact_place;
 }
 
+/// Part of the power beyond half a cycle a step along an axis.
+double aliased_power(const GaborField& field, double step) {
+  double sum = 0, beyond = 0;
+  for (const GaborBand& band : field.bands) {
+    const std::vector<double> chance = band.chances();
+    const auto channels = static_cast<std::size_t>(field.channels);
+    for (std::size_t e = 0; e < chance.size(); ++e) {
+      double power = 0;
+      for (std::size_t c = 0; c < channels; ++c) power += double{std::norm(band.color[e * channels + c])};
+      power *= chance[e] * band.intensity * band.window.energy();
+      sum += power;
+      const GaborFrequency& f = band.frequency[e];
+      if (std::max(std::abs(f.x), std::abs(f.y)) * step > 0.5 + 1e-9) beyond += power;
+    }
+  }
+  return beyond / sum;
+}
+
 class GaborNoise final : public Model, public Gaussian, public Procedural {
  public:
   GaborNoise(GaborField field, std::vector<double> mean, std::optional<Convergence> convergence)
@@ -67,6 +85,19 @@ class GaborNoise final : public Model, public Gaussian, public Procedural {
   int smoothness() const override { return 0; }
   void gradient(std::span<const Point2>, Seed, std::span<float>) const override {
     throw std::invalid_argument("gradients of gabor: its kernels are cut, and their sum jumps there");
+  }
+
+  std::optional<std::string> warning(const Domain& domain) const override {
+    if (convergence_ && convergence_->reason == "iterations") {
+      return fmt::format("its fit did not converge within {} iterations", convergence_->rme.size() - 1);
+    }
+    const double aliased = aliased_power(field_, domain.step);
+    if (aliased < 1e-3) return std::nullopt;
+    return fmt::format(
+        "{:.1f} % of its power has more than half a cycle a pixel of the raster, and shows as lower frequencies; give "
+        "a "
+        "smaller --step, or lower frequencies",
+        100 * aliased);
   }
 
   Footprint footprint(const Domain&) const override {

@@ -24,7 +24,7 @@ GaborFit fit_by_example(const GaborTarget& target, const Params& params) {
         "expected {} times. Give more iterations or more noise, or take the model as it is by force = true",
         pursuit.rme.size() - 1, pursuit.residual, params.number("noise")));
   }
-  if (params.text("fit") == "pursuit") return pursuit;
+  if (params.text("fitter") == "pursuit") return pursuit;
   GaborFit mixture = fit_mixture(target, pursuit,
                                  {.kernels = static_cast<int>(params.integer("kernels")),
                                   .iterations = static_cast<int>(params.integer("polishing"))});
@@ -70,7 +70,7 @@ std::optional<std::string> refuse_by_example(const Problem& problem, const Param
 
 std::span<const ParamSpec> by_example_params() {
   static const std::vector<ParamSpec> specs = {
-      {.name = "fit",
+      {.name = "fitter",
        .default_value = std::string("pursuit"),
        .unit = "",
        .help = "pursuit: kernels of a few round windows, as in the paper; mixture: these merged into few, each with an "

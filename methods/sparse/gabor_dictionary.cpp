@@ -51,7 +51,7 @@ GaborDictionary::GaborDictionary(Extent raster, std::span<const GaborWindow> win
     }
     norms_.push_back(std::sqrt(energy / static_cast<double>(raster.area())));
     // A power's variance is A / 4π.
-    const auto whole = [](double bins) { return std::max(1, static_cast<int>(bins)); };
+    const auto whole = [](double bins) { return std::max(1, static_cast<int>(bins + 1e-6)); };
     spacing_.push_back({whole(raster.width * std::sqrt(window.xx / (4 * std::numbers::pi))),
                         whole(raster.height * std::sqrt(window.yy / (4 * std::numbers::pi)))});
   }

@@ -275,6 +275,16 @@ Image power_ratio(const Image& power, const Image& model) {
   return ratio;
 }
 
+Image penalized_coefficients(const GaborDictionary& dictionary, const Image& power, const PursuitOptions& options,
+                             double penalty, double tolerance) {
+  require_power(power);
+  const ScaledProblem problem(dictionary, power, options);
+  const double lambda = penalty * greatest_penalty(problem);
+  Fista fista(problem);
+  for (int i = 0; i < options.iterations && fista.change() > tolerance; ++i) fista.step(lambda);
+  return problem.coefficients(fista.solution());
+}
+
 Pursuit pursue(const GaborDictionary& dictionary, const Image& power, const PursuitOptions& options) {
   require_power(power);
   const ScaledProblem problem(dictionary, power, options);

@@ -68,7 +68,7 @@ TEST_F(ExecuteTest, EveryMetricIsMeasuredWithWhatItsLevelPromises) {
     constexpr std::array sources{"texton_quality", "spot_identities", "kurtosis_slope",    "torus_crop",
                                  "window_cost",    "reference_error", "spline_smoothness", "surface_identities",
                                  "point_cost",     "kriging_metrics", "conditional_law",   "lrp_identities",
-                                 "lrp_structure",  "lrp_estimates"};
+                                 "lrp_structure",  "lrp_estimates",   "gabor_metrics"};
     constexpr std::array names{"shifted_covariance_deviation", "subpixel_covariance_deviation",
                                "signed_mean_deviation",        "signed_covariance_deviation",
                                "kept_channel_variance",        "cells_visited",

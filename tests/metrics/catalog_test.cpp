@@ -50,7 +50,8 @@ TEST(MetricCatalog, NamesAndOrderAreThoseThatScriptsKnow) {
           "lrp_swapped_distortion_jump", "lrp_jump", "lrp_fixed_time_ratio", "lrp_placement_time_ratio",
           "lrp_radial_change", "lrp_welch_ratio", "lrp_series_error", "lrp_noise_filter_error",
           "lrp_noise_aliasing_error", "lrp_structure_filter_error", "lrp_structure_clamp_error",
-          "lrp_structure_aliasing_error", "lrp_structure_survival", "lrp_suggested_structure"));
+          "lrp_structure_aliasing_error", "lrp_structure_survival", "lrp_suggested_structure", "gabor_kernels",
+          "gabor_windows", "gabor_impacts"));
 }
 
 TEST(MetricCatalog, EveryEntryIsDescribedAndCanBeMeasuredAtItsLevel) {
