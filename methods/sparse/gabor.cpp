@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "methods/base/convolution.h"
+#include "methods/sparse/gabor_shader.h"
 #include "methods/sparse/gabor_spectrum.h"
 #include "methods/sparse/gabor_sum.h"
 
@@ -65,6 +66,10 @@ class GaborNoise final : public Model, public Gaussian, public Procedural {
   int smoothness() const override { return 0; }
   void gradient(std::span<const Point2>, Seed, std::span<float>) const override {
     throw std::invalid_argument("gradients of gabor: its kernels are cut, and their sum jumps there");
+  }
+
+  std::optional<ShaderRecipe> shader(const ShaderRequest& request) const override {
+    return gabor_recipe(field_, mean_, request);
   }
 
   Footprint footprint(const Domain&) const override {
