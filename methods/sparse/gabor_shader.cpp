@@ -52,7 +52,7 @@ void require_gabor_limits(const GaborField& field, const ShaderRequest& request,
   }
 }
 
-std::int64_t floor_quotient(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
+std::int64_t floor_cell(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
 
 /// In 2^−31 cycle a pixel.
 std::uint32_t frequency_word(double f) {
@@ -90,7 +90,7 @@ class GaborTables {
           fmt::format("shader for gabor with cells of {} pixels: expected at most 2^18", grid.side()));
     }
     const std::int64_t side = grid.coarse_side();
-    const std::int64_t cell_x = floor_quotient(base_x_, side), cell_y = floor_quotient(base_y_, side);
+    const std::int64_t cell_x = floor_cell(base_x_, side), cell_y = floor_cell(base_y_, side);
     put_wide(static_cast<std::uint64_t>(cell_x)), put_wide(static_cast<std::uint64_t>(cell_y));
     put(cell_x * side - base_x_), put(cell_y * side - base_y_);
     put_wide(impacts.key());

@@ -73,8 +73,8 @@ TEST(FilteredGabor, IsTheConvolutionWithTheGaussian) {
           }
         }
       }
-      // Each of some 30 kernels is off by at most 2e-4 of a color of 0.5, with any sign.
-      EXPECT_LE(largest / std::sqrt(gabor_covariance(field)(0, 0)), 1e-3) << covariance;
+      // Each of some 30 kernels is off by at most 2e-4 of its color, with any sign: 1.5e-4 of a deviation in all.
+      EXPECT_LE(largest / std::sqrt(gabor_covariance(field)(0, 0)), 5e-4) << covariance;
     }
   }
 }
