@@ -1,5 +1,5 @@
-// The impacts of methods/base/impact_grid.h, bit for bit, of cells relative to the one whose corner is the recipe's
-// base. PROCESS is one of the numbers below, KERNELS the number of kernels, THRESHOLDS that of poisson_thresholds().
+// The impacts of methods/base/impact_grid.h, bit for bit, of any number of grids. PROCESS is one of the numbers below and
+// KERNELS the number of kernels, those of all grids.
 #include "philox.glsl"
 
 #define POISSON 0
@@ -7,15 +7,21 @@
 #define STRATIFIED 2
 #define PAPER 3
 
-uniform uvec4 base_cell;  // 64-bit coordinates of the base's cell: x low, x high, y low, y high
-uniform uvec2 key;        // low, high
-uniform int cell_side;    // in 2^−10 pixel
 #if PROCESS == POISSON || PROCESS == SIGNED_POISSON
-uniform usamplerBuffer thresholds;
+uniform usamplerBuffer thresholds;  // poisson_thresholds(), grid after grid
 #endif
 #if PROCESS == PAPER
 uniform float cell_mean;  // impacts a cell
 #endif
+
+// Cells are counted from one of them, near the recipe's base.
+struct ImpactGrid {
+  uvec4 first_cell;  // its 64-bit coordinates: x low, x high, y low, y high
+  ivec2 corner;      // its corner from the base, in 2^−10 pixel
+  uvec2 key;         // low, high
+  int side;          // in 2^−10 pixel
+  ivec2 thresholds;  // those of the grid: from, to
+};
 
 // As it is drawn: x and y in 2^−24 cell sides.
 struct CellImpact {
@@ -37,7 +43,9 @@ struct CellWords {
   uvec4 words;
 };
 
-uvec4 block_of_cell(uvec4 cell, uint j) { return philox_block(uvec2(key.x ^ j, key.y), cell); }
+uvec4 block_of_cell(ImpactGrid grid, uvec4 cell, uint j) {
+  return philox_block(uvec2(grid.key.x ^ j, grid.key.y), cell);
+}
 
 #if PROCESS == PAPER
 uint wang_hash(uint s) {
@@ -74,31 +82,31 @@ uint paper_count(uint u, uint v) {
 }
 #endif
 
-CellWords open_cell(ivec2 cell) {
+CellWords open_cell(ImpactGrid grid, ivec2 cell) {
   CellWords open;
-  open.cell = uvec4(add_signed(base_cell.xy, cell.x), add_signed(base_cell.zw, cell.y));
+  open.cell = uvec4(add_signed(grid.first_cell.xy, cell.x), add_signed(grid.first_cell.zw, cell.y));
 #if PROCESS == PAPER
-  uint state = wang_hash(1024u * (open.cell.z & 1023u) + (open.cell.x & 1023u) + key.x);
+  uint state = wang_hash(1024u * (open.cell.z & 1023u) + (open.cell.x & 1023u) + grid.key.x);
   if (state == 0u) state = 1u;
   uint u = next_word(state);
   uint v = next_word(state);
   open.words = uvec4(u, v, state, 0u);
 #else
-  open.words = block_of_cell(open.cell, 0u);
+  open.words = block_of_cell(grid, open.cell, 0u);
 #endif
   return open;
 }
 
 // Of a cell that was opened just now.
-uint impact_count(CellWords open) {
+uint impact_count(ImpactGrid grid, CellWords open) {
 #if PROCESS == STRATIFIED
   return 1u;
 #elif PROCESS == PAPER
   return paper_count(open.words.x, open.words.y);
 #else
   // Thresholds at most the first word.
-  int low = 0;
-  int high = THRESHOLDS;
+  int low = grid.thresholds.x;
+  int high = grid.thresholds.y;
   while (low < high) {
     int middle = (low + high) / 2;
     if (texelFetch(thresholds, middle).x <= open.words.x) {
@@ -107,21 +115,21 @@ uint impact_count(CellWords open) {
       high = middle;
     }
   }
-  return uint(low);
+  return uint(low - grid.thresholds.x);
 #endif
 }
 
 // Goes on to the words of impact i of a cell that was opened just now.
-void skip_to_impact(inout CellWords open, uint i) {
+void skip_to_impact(ImpactGrid grid, inout CellWords open, uint i) {
 #if PROCESS == PAPER
   for (uint k = 0u; k < 2u * i; ++k) next_word(open.words.z);
 #elif PROCESS != STRATIFIED
-  if (i > 0u && (i & 1u) == 0u) open.words = block_of_cell(open.cell, i / 2u);
+  if (i > 0u && (i & 1u) == 0u) open.words = block_of_cell(grid, open.cell, i / 2u);
 #endif
 }
 
 // Impact i, to be asked for in turn from 0 or from where skip_to_impact() went.
-CellImpact next_impact(inout CellWords open, uint i) {
+CellImpact next_impact(ImpactGrid grid, inout CellWords open, uint i) {
   uvec2 words;
   float weight = 1.0;
 #if PROCESS == PAPER
@@ -131,7 +139,7 @@ CellImpact next_impact(inout CellWords open, uint i) {
   words = open.words.zw;
   if (open.words.x >> 31 != 0u) weight = -1.0;
 #else
-  if ((i & 1u) != 0u) open.words = block_of_cell(open.cell, (i + 1u) / 2u);
+  if ((i & 1u) != 0u) open.words = block_of_cell(grid, open.cell, (i + 1u) / 2u);
   words = (i & 1u) != 0u ? open.words.xy : open.words.zw;
 #endif
 #if PROCESS == SIGNED_POISSON
@@ -142,10 +150,11 @@ CellImpact next_impact(inout CellWords open, uint i) {
 }
 
 // Rounded down to 2^−22 pixel.
-PlaneImpact impact_on_plane(ivec2 cell, CellImpact impact) {
+PlaneImpact impact_on_plane(ImpactGrid grid, ivec2 cell, CellImpact impact) {
   uvec2 high, low;
-  umulExtended(impact.place, uvec2(cell_side), high, low);
-  PlanePoint place = PlanePoint(cell * cell_side + ivec2(high << 8 | low >> 24), ivec2(low >> 12) & 4095);
+  umulExtended(impact.place, uvec2(grid.side), high, low);
+  ivec2 corner = grid.corner + cell * grid.side;
+  PlanePoint place = PlanePoint(corner + ivec2(high << 8 | low >> 24), ivec2(low >> 12) & 4095);
   return PlaneImpact(place, impact.kernel, impact.weight);
 }
 
@@ -155,7 +164,9 @@ struct CellRange {
   ivec2 high;
 };
 
-CellRange cells_of(PlaneBox box) {
-  return CellRange(ivec2(floor_division(box.low.x, cell_side), floor_division(box.low.y, cell_side)),
-                   ivec2(floor_division(box.high.x, cell_side), floor_division(box.high.y, cell_side)));
+CellRange cells_of(ImpactGrid grid, PlaneBox box) {
+  ivec2 low = box.low - grid.corner;
+  ivec2 high = box.high - grid.corner;
+  return CellRange(ivec2(floor_division(low.x, grid.side), floor_division(low.y, grid.side)),
+                   ivec2(floor_division(high.x, grid.side), floor_division(high.y, grid.side)));
 }

@@ -45,7 +45,7 @@ uint sum_counts(uint count, uint cells) {
 }
 
 // Impact number `number` of the cells of the range from `first` on.
-PlaneImpact numbered_impact(CellRange range, uint first, uint cells, uint number) {
+PlaneImpact numbered_impact(ImpactGrid grid, CellRange range, uint first, uint cells, uint number) {
 #if PROCESS == STRATIFIED
   uint low = number;
   uint start = number;
@@ -63,9 +63,9 @@ PlaneImpact numbered_impact(CellRange range, uint first, uint cells, uint number
   uint start = low == 0u ? 0u : tile_ends[low - 1u];
 #endif
   ivec2 cell = cell_of_range(range, first + low);
-  CellWords open = open_cell(cell);
-  skip_to_impact(open, number - start);
-  return impact_on_plane(cell, next_impact(open, number - start));
+  CellWords open = open_cell(grid, cell);
+  skip_to_impact(grid, open, number - start);
+  return impact_on_plane(grid, cell, next_impact(grid, open, number - start));
 }
 
 // Appends the impacts of the threads that keep theirs, in the order of threads, to a list of `listed` impacts. Returns
@@ -104,7 +104,7 @@ void add_listed(PlanePoint point, KernelFilter kernel, uint listed, inout vec4 s
 
 // Lists the impacts in the box of a range of cells, and adds them whenever the list may not take all of a further step.
 // Returns how many are left in it.
-uint add_cells(CellRange range, PlaneBox box, PlanePoint point, KernelFilter kernel, uint listed,
+uint add_cells(ImpactGrid grid, CellRange range, PlaneBox box, PlanePoint point, KernelFilter kernel, uint listed,
                inout vec4 sums[GROUPS]) {
   uint all_cells = uint(range.high.x - range.low.x + 1) * uint(range.high.y - range.low.y + 1);
   for (uint first = 0u; first < all_cells; first += group_size) {
@@ -114,7 +114,7 @@ uint add_cells(CellRange range, PlaneBox box, PlanePoint point, KernelFilter ker
 #else
     uint count = 0u;
     if (gl_LocalInvocationIndex < cells) {
-      count = impact_count(open_cell(cell_of_range(range, first + gl_LocalInvocationIndex)));
+      count = impact_count(grid, open_cell(grid, cell_of_range(range, first + gl_LocalInvocationIndex)));
     }
     uint total = sum_counts(count, cells);
 #endif
@@ -123,7 +123,7 @@ uint add_cells(CellRange range, PlaneBox box, PlanePoint point, KernelFilter ker
       PlaneImpact impact = PlaneImpact(PlanePoint(ivec2(0), ivec2(0)), 0, 1.0);
       bool is_kept = number < total;
       if (is_kept) {
-        impact = numbered_impact(range, first, cells, number);
+        impact = numbered_impact(grid, range, first, cells, number);
         is_kept = all(greaterThanEqual(impact.place.coarse, box.low)) &&
                   all(lessThanEqual(impact.place.coarse, box.high));
       }
@@ -140,13 +140,14 @@ uint add_cells(CellRange range, PlaneBox box, PlanePoint point, KernelFilter ker
 void add_impacts(PlanePoint point, mat2 footprint, PlaneBox tile, inout vec4 sums[GROUPS]) {
   KernelFilter kernel = kernel_filter(footprint);
   PlaneBox box = reaching(tile, margin_of_group(kernel.margin));
-  CellRange range = cells_of(box);
+  ImpactGrid grid = recipe_grid();
+  CellRange range = cells_of(grid, box);
   // So many rows that 32 bits count their cells.
   int rows = max((1 << 24) / (range.high.x - range.low.x + 1), 1);
   uint listed = 0u;
   for (int top = range.low.y; top <= range.high.y; top += rows) {
     ivec2 last = ivec2(range.high.x, min(top + rows - 1, range.high.y));
-    listed = add_cells(CellRange(ivec2(range.low.x, top), last), box, point, kernel, listed, sums);
+    listed = add_cells(grid, CellRange(ivec2(range.low.x, top), last), box, point, kernel, listed, sums);
   }
   add_listed(point, kernel, listed, sums);
   barrier();  // before the list of another sample of the same pixel

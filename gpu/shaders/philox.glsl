@@ -10,8 +10,10 @@ uvec4 philox_block(uvec2 philox_key, uvec4 counter) {
   return counter;
 }
 
-uvec2 add_signed(uvec2 wide, int a) {
+uvec2 add_wide(uvec2 a, uvec2 b) {
   uint carry;
-  uint low = uaddCarry(wide.x, uint(a), carry);
-  return uvec2(low, wide.y + uint(a >> 31) + carry);
+  uint low = uaddCarry(a.x, b.x, carry);
+  return uvec2(low, a.y + b.y + carry);
 }
+
+uvec2 add_signed(uvec2 wide, int a) { return add_wide(wide, uvec2(a, a >> 31)); }

@@ -1,7 +1,7 @@
 // Texton noise: start + Σ_i ε_i h_{k_i}(y − x_i) over the impacts x_i of the plane, of kernels that are scaled already
 // (methods/spot/spline_noise.h).
 #include "plane.glsl"
-#include "impact_grid.glsl"
+#include "recipe_grid.glsl"
 #include "spline_kernel.glsl"
 
 uniform float start[CHANNELS];
@@ -11,14 +11,15 @@ uniform float start[CHANNELS];
 #else
 void add_impacts(PlanePoint point, mat2 footprint, PlaneBox tile, inout vec4 sums[GROUPS]) {
   KernelFilter kernel = kernel_filter(footprint);
-  CellRange range = cells_of(reaching(tile, kernel.margin));
+  ImpactGrid grid = recipe_grid();
+  CellRange range = cells_of(grid, reaching(tile, kernel.margin));
   for (int y = range.low.y; y <= range.high.y; ++y) {
     for (int x = range.low.x; x <= range.high.x; ++x) {
       ivec2 cell = ivec2(x, y);
-      CellWords open = open_cell(cell);
-      uint count = impact_count(open);
+      CellWords open = open_cell(grid, cell);
+      uint count = impact_count(grid, open);
       for (uint i = 0u; i < count; ++i) {
-        add_impact(point, kernel, impact_on_plane(cell, next_impact(open, i)), sums);
+        add_impact(point, kernel, impact_on_plane(grid, cell, next_impact(grid, open, i)), sums);
       }
     }
   }

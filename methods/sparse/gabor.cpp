@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "methods/base/convolution.h"
+#include "methods/sparse/gabor_shader.h"
 #include "methods/sparse/gabor_spectrum.h"
 #include "methods/sparse/gabor_sum.h"
 
@@ -87,6 +88,10 @@ class GaborNoise final : public Model, public Gaussian, public Procedural {
     throw std::invalid_argument("gradients of gabor: its kernels are cut, and their sum jumps there");
   }
 
+  std::optional<ShaderRecipe> shader(const ShaderRequest& request) const override {
+    return gabor_recipe(field_, mean_, request);
+  }
+
   std::optional<std::string> warning(const Domain& domain) const override {
     if (convergence_ && convergence_->reason == "iterations") {
       return fmt::format("its fit did not converge within {} iterations", convergence_->rme.size() - 1);
@@ -95,9 +100,8 @@ class GaborNoise final : public Model, public Gaussian, public Procedural {
     if (aliased < 1e-3) return std::nullopt;
     return fmt::format(
         "{:.1f} % of its power has more than half a cycle a pixel of the raster, and shows as lower frequencies; give "
-        "a "
-        "smaller --step, or lower frequencies",
-        100 * aliased);
+        "a smaller --step, or footprint = {}",
+        100 * aliased, domain.step);
   }
 
   Footprint footprint(const Domain&) const override {

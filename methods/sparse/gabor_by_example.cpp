@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "methods/sparse/gabor.h"
+#include "methods/sparse/gabor_filter.h"
 #include "methods/sparse/gabor_fit.h"
 
 namespace textonbench {
@@ -41,13 +42,13 @@ std::unique_ptr<Model> analyze_gabor_by_example(const Problem& problem, const Pa
   const GaborTarget target = gabor_target(problem.exemplar, static_cast<int>(params.integer("side")));
   GaborFit fit = fit_by_example(target, params);
   const std::string& impacts = params.text("impacts");
-  GaborField field = fitted_field(fit, target.channels(),
-                                  {.mni = params.number("mni"),
-                                   .process = impacts == "stratified"       ? ImpactProcess::stratified
-                                              : impacts == "signed_poisson" ? ImpactProcess::signed_poisson
-                                                                            : ImpactProcess::poisson,
-                                   .axes = params.text("colors") == "axes"});
-  return make_gabor(std::move(field), target.mean,
+  const GaborField field = fitted_field(fit, target.channels(),
+                                        {.mni = params.number("mni"),
+                                         .process = impacts == "stratified"       ? ImpactProcess::stratified
+                                                    : impacts == "signed_poisson" ? ImpactProcess::signed_poisson
+                                                                                  : ImpactProcess::poisson,
+                                         .axes = params.text("colors") == "axes"});
+  return make_gabor(filtered_gabor(field, params.number("footprint")), target.mean,
                     Convergence{.step = "iteration", .rme = std::move(fit.rme), .reason = fit.reason});
 }
 
@@ -153,6 +154,7 @@ std::span<const ParamSpec> by_example_params() {
        .help = "of the mixture, at most",
        .min = 1,
        .max = 10000},
+      footprint_param(),
       {.name = "force",
        .default_value = false,
        .unit = "",

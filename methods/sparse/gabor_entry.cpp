@@ -5,6 +5,7 @@
 
 #include "methods/base/gaussian_model.h"
 #include "methods/sparse/gabor.h"
+#include "methods/sparse/gabor_filter.h"
 
 namespace textonbench {
 namespace {
@@ -52,7 +53,7 @@ std::unique_ptr<Model> analyze_gabor(const Problem& problem, const Params& param
     }
   }
   band.draw_by(weights);
-  return make_gabor(std::move(field), colors.mean);
+  return make_gabor(filtered_gabor(field, params.number("footprint")), colors.mean);
 }
 
 std::span<const ParamSpec> gabor_params() {
@@ -109,7 +110,8 @@ std::span<const ParamSpec> gabor_params() {
        .default_value = std::string("impacts"),
        .unit = "",
        .help = "impacts: those of the impacts; uniform: times uniform numbers between -1 and 1, as in the paper",
-       .choices = {"impacts", "uniform"}}};
+       .choices = {"impacts", "uniform"}},
+      footprint_param()};
   return specs;
 }
 
@@ -122,7 +124,9 @@ MethodEntry gabor_entry() {
           .params = gabor_params(),
           .refuses = [](const Problem&, const Params& params, const Domain& domain) -> std::optional<std::string> {
             if (auto reason = refuse_gabor_domain(domain)) return reason;
-            return refuse_gabor(gabor_options(params));
+            const GaborOptions options = gabor_options(params);
+            if (auto reason = refuse_gabor(options)) return reason;
+            return refuse_footprint(GaborWindow::round(options.bandwidth, options.cut), params.number("footprint"));
           },
           .analyze = analyze_gabor};
 }

@@ -108,6 +108,10 @@ class GaborImpacts {
   /// Appends the impacts in a rectangle, in the order of ImpactGrid::draw().
   void draw(const PlaneRectangle& rectangle, std::vector<GaborImpact>& impacts);
 
+  const ImpactGrid& grid() const { return grid_; }
+  std::uint64_t key() const { return key_; }
+  std::uint64_t kernel_key() const { return kernel_key_; }
+
  private:
   const GaborField* field_;
   const GaborBand* band_;

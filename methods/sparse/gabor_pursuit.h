@@ -29,8 +29,8 @@ struct PursuitOptions {
   int iterations = 1000;  ///< in all, for all λ
 };
 
-/// The minimum for λ = `penalty` times the least one with c = 0, to a relative change of the coefficients of `tolerance`.
-/// `power` as in pursue(); options.noise is not looked at.
+/// The minimum for λ = `penalty` times the least one with c = 0, to a relative change of the coefficients of
+/// `tolerance`. `power` as in pursue(); options.noise is not looked at.
 Image penalized_coefficients(const GaborDictionary& dictionary, const Image& power, const PursuitOptions& options,
                              double penalty, double tolerance);
 
