@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "methods/base/parallel.h"
-#include "methods/base/portable_math.h"
+#include "methods/sparse/gabor_kernel.h"
 
 namespace textonbench {
 namespace {
@@ -17,172 +16,136 @@ constexpr int gabor_tile = 64;
 
 std::int64_t plane_coordinate(double at) { return static_cast<std::int64_t>(std::floor(at * units_a_pixel)); }
 
-/// exp(−π c t²) from a table, |t| <= R, within 3e-7.
-class GaussianTable {
- public:
-  GaussianTable(double coefficient, double reach) : scale_(nodes / (reach * units_a_pixel)), values_(nodes + 2) {
-    for (int i = 0; i < nodes + 2; ++i) {
-      const double t = reach * i / nodes;
-      values_[static_cast<std::size_t>(i)] = static_cast<float>(std::exp(-std::numbers::pi * coefficient * t * t));
-    }
-  }
-  /// `distance` in 2^−22 pixel.
-  float at(std::int64_t distance) const {
-    const auto place = static_cast<float>(std::abs(static_cast<double>(distance)) * scale_);
-    const auto node = static_cast<std::size_t>(place);
-    const float part = place - static_cast<float>(node);
-    return values_[node] + part * (values_[node + 1] - values_[node]);
-  }
+std::int64_t sheared(const GaborShape& shape, std::int64_t distance) {
+  return shape.shear == 0 ? 0 : std::llround(shape.shear * static_cast<double>(distance));
+}
 
- private:
-  static constexpr int nodes = 2048;
-  double scale_;
-  std::vector<float> values_;
-};
+PlaneRectangle with_margin(std::int64_t left, std::int64_t top, std::int64_t right, std::int64_t bottom,
+                           const GaborShape& shape) {
+  return {left - shape.reach_x, top - shape.reach_y, right + shape.reach_x + 1, bottom + shape.reach_y + 1};
+}
 
-/// Part of a kernel along an axis.
-struct AxisPart {
+/// w c (part along y): what parts along x are multiplied by.
+struct ColoredPart {
   float real = 0;
   float imaginary = 0;
 };
 
-/// `frequency` in 2^−32 turn a pixel, `distance` in 2^−22 pixel, at most 512 pixels.
-AxisPart axis_wave(std::int64_t frequency, std::int64_t distance, std::uint32_t phase) {
-  constexpr int dropped = 2;
-  const std::int64_t turns = (frequency * (distance >> dropped)) >> (plane_bits - dropped);
-  AxisPart wave;
-  portable::cos_sin(static_cast<std::uint32_t>(turns) + phase, wave.real, wave.imaginary);
-  return wave;
+ColoredPart times_color(float real, float imaginary, const std::complex<float>& color, float weight) {
+  return {weight * (color.real() * real - color.imag() * imaginary),
+          weight * (color.real() * imaginary + color.imag() * real)};
 }
 
-std::int64_t turns_a_pixel(double frequency) { return std::llround(frequency * 0x1p32); }
-
-double squared_pixel_distance(std::int64_t distance) {
-  const double d = static_cast<double>(distance) / units_a_pixel;
-  return d * d;
+__attribute__((target_clones("default", "avx2", "avx512f"))) void add_row(const ColoredPart& row, const float* real,
+                                                                          const float* imaginary, int count,
+                                                                          float* out) {
+  for (int x = 0; x < count; ++x) out[x] += row.real * real[x] - row.imaginary * imaginary[x];
 }
 
-/// w c (row part), what the columns of a channel are multiplied by.
-AxisPart times_color(const AxisPart& row, const std::complex<float>& color, float weight) {
-  return {weight * (color.real() * row.real - color.imag() * row.imaginary),
-          weight * (color.real() * row.imaginary + color.imag() * row.real)};
+/// A row of three channels.
+__attribute__((target_clones("default", "avx2", "avx512f"))) void add_color_row(const ColoredPart* row,
+                                                                                const float* real,
+                                                                                const float* imaginary, int count,
+                                                                                float* first, float* second,
+                                                                                float* third) {
+  for (int x = 0; x < count; ++x) {
+    const float re = real[x], im = imaginary[x];
+    first[x] += row[0].real * re - row[0].imaginary * im;
+    second[x] += row[1].real * re - row[1].imaginary * im;
+    third[x] += row[2].real * re - row[2].imaginary * im;
+  }
 }
 
-__attribute__((target_clones("default", "avx2", "avx512f"))) void add_row(const AxisPart& row, const AxisPart* columns,
-                                                                          int count, float* out) {
-  for (int x = 0; x < count; ++x) out[x] += row.real * columns[x].real - row.imaginary * columns[x].imaginary;
-}
-
-/// Kernels on a part of a raster whose coordinates are x and y. Along a row the window is exp(−π xx (dx + shear dy)²)
-/// by a factor of the row, so where there is no shear columns have one factor for all rows.
+/// Kernels of a band on a part of a raster.
 class KernelRaster {
  public:
-  KernelRaster(const GaborField& field, const GaborBand& band)
-      : channels_(field.channels),
-        band_(band),
-        shear_(band.window.xy / band.window.xx),
-        across_(band.window.determinant() / band.window.xx),
-        columns_(band.window.xx, std::sqrt(band.window.limit() / band.window.xx)),
-        rows_(across_, band.window.half_height()),
-        row_reach_(plane_coordinate(std::sqrt(band.window.limit() / band.window.xx)) + 1),
-        reach_x_(plane_coordinate(band.window.half_width()) + 1),
-        reach_y_(plane_coordinate(band.window.half_height()) + 1) {}
+  KernelRaster(const GaborField& field, const GaborBand& band) : channels_(field.channels), band_(band), shape_(band) {}
 
-  std::int64_t reach_x() const { return reach_x_; }
-  std::int64_t reach_y() const { return reach_y_; }
+  const GaborShape& shape() const { return shape_; }
 
-  /// Adds it to `out`, whose pixel (i, j) is at (x[i], y[j]).
+  /// Adds a kernel to `out`, whose pixel (i, j) is at (x[i], y[j]).
   void add(const GaborImpact& impact, const std::vector<std::int64_t>& x, const std::vector<std::int64_t>& y,
            Image& out) {
-    const auto from = std::ranges::upper_bound(x, impact.x - reach_x_),
-               to = std::ranges::lower_bound(x, impact.x + reach_x_);
-    const auto above = std::ranges::upper_bound(y, impact.y - reach_y_),
-               below = std::ranges::lower_bound(y, impact.y + reach_y_);
+    const auto from = std::ranges::upper_bound(x, impact.x - shape_.reach_x);
+    const auto to = std::ranges::lower_bound(x, impact.x + shape_.reach_x);
+    const auto above = std::ranges::upper_bound(y, impact.y - shape_.reach_y);
+    const auto below = std::ranges::lower_bound(y, impact.y + shape_.reach_y);
     if (from >= to || above >= below) return;
-    const GaborFrequency& f = band_.frequency[impact.entry];
-    const std::int64_t along_x = turns_a_pixel(f.x), along_y = turns_a_pixel(f.y);
-    const auto columns = static_cast<std::size_t>(to - from);
-    wave_.resize(columns), part_.resize(columns), forms_.resize(columns);
-    for (std::size_t i = 0; i < columns; ++i) {
-      wave_[i] =
-          axis_wave(along_x, std::clamp(from[static_cast<std::ptrdiff_t>(i)] - impact.x, -reach_x_, reach_x_), 0);
-    }
-    if (shear_ == 0) set_windows(&*from, impact.x);
-    const std::complex<float>* color =
-        band_.color.data() + std::size_t{impact.entry} * static_cast<std::size_t>(channels_);
-    for (auto row = above; row < below; ++row) {
-      const std::int64_t distance = *row - impact.y;
-      if (shear_ != 0) set_windows(&*from, impact.x - std::llround(shear_ * static_cast<double>(distance)));
-      const double left_over = band_.window.limit() - across_ * squared_pixel_distance(distance);
-      std::size_t first = 0, end = columns;
-      while (first < end && forms_[first] >= left_over) ++first;
-      while (end > first && forms_[end - 1] >= left_over) --end;
-      if (first == end) continue;
-      AxisPart part = axis_wave(along_y, distance, impact.phase);
-      const float window = rows_.at(std::clamp(distance, 1 - reach_y_, reach_y_ - 1));
-      part = {window * part.real, window * part.imaginary};
-      const auto y_out = static_cast<int>(row - y.begin());
-      const auto x_out = static_cast<std::size_t>(from - x.begin()) + first;
-      for (int c = 0; c < channels_; ++c) {
-        add_row(times_color(part, color[c], impact.weight), part_.data() + first, static_cast<int>(end - first),
-                out.row(c, y_out).data() + x_out);
-      }
+    const std::int32_t* frequency = shape_.frequency.data() + std::size_t{2} * impact.entry;
+    rows_.resize(static_cast<int>(below - above));
+    for (int j = 0; j < rows_.count(); ++j) rows_.distance()[j] = place_distance(above[j] - impact.y);
+    rows_.set_waves(frequency[1], impact.phase);
+    rows_.set_windows(shape_.across, rows_.distance());
+    columns_.resize(static_cast<int>(to - from));
+    for (int i = 0; i < columns_.count(); ++i) columns_.distance()[i] = place_distance(from[i] - impact.x);
+    columns_.set_waves(frequency[0], 0);
+    if (shape_.shear == 0) columns_.set_windows(shape_.along, columns_.distance());
+    const int left = static_cast<int>(from - x.begin()), top = static_cast<int>(above - y.begin());
+    int first = columns_.count() / 2, end = first;
+    for (int j = 0; j < rows_.count(); ++j) {
+      if (shape_.shear != 0) shear_columns(&*from, impact.x - sheared(shape_, above[j] - impact.y));
+      find_chord(shape_.limit - rows_.form()[j], first, end);
+      if (first < end) add_row_of(impact, j, left + first, top + j, first, end - first, out);
     }
   }
 
  private:
-  /// Windows of the columns, and the forms' parts that are theirs, around a middle in 2^−22 pixel.
-  void set_windows(const std::int64_t* x, std::int64_t middle) {
-    for (std::size_t i = 0; i < wave_.size(); ++i) {
-      const std::int64_t distance = x[i] - middle;
-      forms_[i] = band_.window.xx * squared_pixel_distance(distance);
-      const float window = columns_.at(std::clamp(distance, 1 - row_reach_, row_reach_ - 1));
-      part_[i] = {window * wave_[i].real, window * wave_[i].imaginary};
+  void shear_columns(const std::int64_t* x, std::int64_t middle) {
+    shifted_.resize(static_cast<std::size_t>(columns_.count() + KernelPlaces::block));
+    for (int i = 0; i < columns_.count(); ++i) shifted_[static_cast<std::size_t>(i)] = place_distance(x[i] - middle);
+    columns_.set_windows(shape_.along, shifted_.data());
+  }
+
+  /// The columns whose forms are below `room`: neighbors of each other, and of those of the row before.
+  void find_chord(float room, int& first, int& end) const {
+    const float* form = columns_.form();
+    const int count = columns_.count();
+    if (first == end) {
+      first = static_cast<int>(std::min_element(form, form + count) - form);
+      end = first;
+      if (form[first] < room) ++end;
+    }
+    while (first < end && form[first] >= room) ++first;
+    while (end > first && form[end - 1] >= room) --end;
+    if (first == end) return find_again(room, first, end);
+    while (first > 0 && form[first - 1] < room) --first;
+    while (end < count && form[end] < room) ++end;
+  }
+  /// Where it has nothing in common with the row before.
+  void find_again(float room, int& first, int& end) const {
+    const float* form = columns_.form();
+    const int count = columns_.count();
+    first = static_cast<int>(std::min_element(form, form + count) - form), end = first;
+    while (end < count && form[end] < room) ++end;
+    while (first > 0 && first < end && form[first - 1] < room) --first;
+  }
+
+  void add_row_of(const GaborImpact& impact, int row, int x, int y, int first, int count, Image& out) const {
+    const std::complex<float>* color =
+        band_.color.data() + std::size_t{impact.entry} * static_cast<std::size_t>(channels_);
+    const float real = rows_.real()[row], imaginary = rows_.imaginary()[row];
+    if (channels_ == 3) {
+      const ColoredPart parts[] = {times_color(real, imaginary, color[0], impact.weight),
+                                   times_color(real, imaginary, color[1], impact.weight),
+                                   times_color(real, imaginary, color[2], impact.weight)};
+      add_color_row(parts, columns_.real() + first, columns_.imaginary() + first, count, out.row(0, y).data() + x,
+                    out.row(1, y).data() + x, out.row(2, y).data() + x);
+      return;
+    }
+    for (int c = 0; c < channels_; ++c) {
+      add_row(times_color(real, imaginary, color[c], impact.weight), columns_.real() + first,
+              columns_.imaginary() + first, count, out.row(c, y).data() + x);
     }
   }
 
   int channels_;
   const GaborBand& band_;
-  double shear_, across_;
-  GaussianTable columns_, rows_;
-  std::int64_t row_reach_, reach_x_, reach_y_;
-  std::vector<AxisPart> wave_, part_;
-  std::vector<double> forms_;
+  GaborShape shape_;
+  KernelPlaces rows_, columns_;
+  std::vector<std::int32_t> shifted_;
 };
 
-PlaneRectangle with_margin(std::int64_t left, std::int64_t top, std::int64_t right, std::int64_t bottom,
-                           const KernelRaster& kernel) {
-  return {left - kernel.reach_x(), top - kernel.reach_y(), right + kernel.reach_x() + 1, bottom + kernel.reach_y() + 1};
-}
-
 }  // namespace
-
-void sum_gabor(const GaborField& field, Seed seed, std::span<const WavePoint> points, std::span<float> out) {
-  constexpr std::size_t chunk = 256;
-  const auto channels = static_cast<std::size_t>(field.channels);
-  parallel_for(static_cast<int>((points.size() + chunk - 1) / chunk), [&](int task) {
-    const std::size_t first = static_cast<std::size_t>(task) * chunk, end = std::min(points.size(), first + chunk);
-    std::vector<GaborImpact> impacts;
-    std::vector<std::int64_t> x(1), y(1);
-    Image value({1, 1}, field.channels);
-    std::vector<GaborImpacts> drawers;
-    std::vector<KernelRaster> kernels;
-    for (std::size_t b = 0; b < field.bands.size(); ++b) {
-      drawers.emplace_back(field, b, seed);
-      kernels.emplace_back(field, field.bands[b]);
-    }
-    for (std::size_t i = first; i < end; ++i) {
-      x[0] = points[i].x, y[0] = points[i].y;
-      for (std::size_t c = 0; c < channels; ++c) value.at(static_cast<int>(c), 0, 0) = 0;
-      for (std::size_t b = 0; b < kernels.size(); ++b) {
-        impacts.clear();
-        drawers[b].draw(with_margin(x[0], y[0], x[0], y[0], kernels[b]), impacts);
-        for (const GaborImpact& impact : impacts) kernels[b].add(impact, x, y, value);
-      }
-      for (std::size_t c = 0; c < channels; ++c) out[c * points.size() + i] = value.at(static_cast<int>(c), 0, 0);
-    }
-  });
-}
 
 void add_gabor(const GaborField& field, Seed seed, const WaveRaster& raster, Image& out) {
   const int across = (out.width() + gabor_tile - 1) / gabor_tile, down = (out.height() + gabor_tile - 1) / gabor_tile;
@@ -195,20 +158,20 @@ void add_gabor(const GaborField& field, Seed seed, const WaveRaster& raster, Ima
     for (int i = top; i < std::min(top + gabor_tile, out.height()); ++i) {
       y.push_back(plane_coordinate(raster.y + raster.step * i));
     }
-    // Sums start at zero, as at points.
-    Image sum({static_cast<int>(x.size()), static_cast<int>(y.size())}, field.channels);
     std::vector<GaborImpact> impacts;
     for (std::size_t b = 0; b < field.bands.size(); ++b) {
+      // The sum of each band starts at zero, as at points.
+      Image sum({static_cast<int>(x.size()), static_cast<int>(y.size())}, field.channels);
       KernelRaster kernel(field, field.bands[b]);
       impacts.clear();
-      GaborImpacts(field, b, seed).draw(with_margin(x.front(), y.front(), x.back(), y.back(), kernel), impacts);
+      GaborImpacts(field, b, seed).draw(with_margin(x.front(), y.front(), x.back(), y.back(), kernel.shape()), impacts);
       for (const GaborImpact& impact : impacts) kernel.add(impact, x, y, sum);
-    }
-    for (int c = 0; c < field.channels; ++c) {
-      for (int j = 0; j < sum.height(); ++j) {
-        float* to = out.row(c, top + j).data() + left;
-        const auto from = sum.row(c, j);
-        for (std::size_t i = 0; i < from.size(); ++i) to[i] += from[i];
+      for (int c = 0; c < field.channels; ++c) {
+        for (int j = 0; j < sum.height(); ++j) {
+          float* to = out.row(c, top + j).data() + left;
+          const auto from = sum.row(c, j);
+          for (std::size_t i = 0; i < from.size(); ++i) to[i] += from[i];
+        }
       }
     }
   });
