@@ -1,4 +1,5 @@
-// Analysis of Gabor noise by example, on one thread, on rasters of 128 x 128 bins in color (the paper took two minutes).
+// Analysis of Gabor noise by example, on one thread, on rasters of 128 x 128 bins in color (the paper took two
+// minutes).
 //
 // pursuit: the whole fit, over the transforms of its iterations alone: of each window one forward and one inverse, and
 //   one of the sum each way.

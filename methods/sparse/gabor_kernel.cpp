@@ -99,9 +99,10 @@ void KernelPlaces::set_waves(std::int32_t frequency, std::uint32_t phase) {
   waves_of(turns_.data(), count_, cosine_.data(), sine_.data());
 }
 
-void KernelPlaces::set_windows(float coefficient, const std::int32_t* distance) {
-  windows_of(coefficient, distance, count_, cosine_.data(), sine_.data(), form_.data(), real_.data(),
-             imaginary_.data());
+void KernelPlaces::set_windows(float coefficient, const std::int32_t* distance, int first, int end) {
+  const int from = first / block * block;
+  windows_of(coefficient, distance + from, end - from, cosine_.data() + from, sine_.data() + from, form_.data() + from,
+             real_.data() + from, imaginary_.data() + from);
 }
 
 }  // namespace textonbench

@@ -5,6 +5,7 @@
 // not depend on its neighbors in a call: all routes give the same bits.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -40,8 +41,8 @@ class KernelPlaces {
 
   /// Waves of a frequency and phase at the distances.
   void set_waves(std::int32_t frequency, std::uint32_t phase);
-  /// Forms c t² at distances t, and the waves times exp(−π c t²).
-  void set_windows(float coefficient, const std::int32_t* distance);
+  /// Forms c t² at distances t, and the waves times exp(−π c t²), of the places [first, end) alone.
+  void set_windows(float coefficient, const std::int32_t* distance, int first, int end);
 
  private:
   int count_ = 0;
@@ -50,7 +51,15 @@ class KernelPlaces {
   std::vector<float> cosine_, sine_, real_, imaginary_, form_;
 };
 
-/// A distance of at most 2^11 pixels in 2^−22 pixel, in 2^−20.
-inline std::int32_t place_distance(std::int64_t distance) { return static_cast<std::int32_t>(distance >> 2); }
+/// A coordinate in 2^−22 pixel as what places are made of, in 2^−20: distances below 2^11 pixels fit 32 bits.
+inline std::int64_t place_coordinate(std::int64_t at) { return at >> 2; }
+inline std::int32_t place_distance(std::int64_t to, std::int64_t from) {
+  return static_cast<std::int32_t>(place_coordinate(to) - place_coordinate(from));
+}
+
+/// s dy of a distance dy.
+inline std::int32_t sheared(double shear, std::int32_t distance) {
+  return static_cast<std::int32_t>(std::floor(shear * distance + 0.5));
+}
 
 }  // namespace textonbench

@@ -11,7 +11,7 @@ namespace textonbench {
 namespace {
 
 /// Points of a call that are grouped together.
-constexpr std::size_t points_a_task = 8192;
+constexpr std::size_t points_at_once = std::size_t{1} << 20;
 /// Points that a square of the plane is to hold, so that its impacts are drawn once for all of them.
 constexpr double points_a_square = 48;
 
@@ -21,7 +21,25 @@ struct PointSquares {
   std::vector<std::size_t> first;  ///< and the end
 };
 
-std::int64_t floor_quotient(std::int64_t a, std::int64_t b) { return a / b - (a % b != 0 && (a < 0) != (b < 0)); }
+/// Row and column of a square.
+using SquareKey = std::pair<std::int64_t, std::int64_t>;
+
+std::vector<std::uint32_t> sorted_order(const std::vector<SquareKey>& keys) {
+  std::vector<std::uint32_t> order(keys.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return keys[i]; });
+  return order;
+}
+
+/// The same where squares are few, in as many steps as there are of them and of points.
+std::vector<std::uint32_t> counted_order(const std::vector<SquareKey>& keys, std::int64_t across, std::int64_t down) {
+  const auto place = [&](const SquareKey& key) { return static_cast<std::size_t>(key.first * across + key.second); };
+  std::vector<std::uint32_t> next(static_cast<std::size_t>(across * down) + 1), order(keys.size());
+  for (const SquareKey& key : keys) ++next[place(key) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  for (std::uint32_t i = 0; i < keys.size(); ++i) order[next[place(keys[i])]++] = i;
+  return order;
+}
 
 /// Squares of at least a quarter of the kernels' box and at most the whole, by the density of the points.
 PointSquares squares_of(std::span<const WavePoint> points, const GaborShape& shape) {
@@ -35,13 +53,14 @@ PointSquares squares_of(std::span<const WavePoint> points, const GaborShape& sha
   const double wanted = std::sqrt(area * points_a_square / static_cast<double>(points.size()));
   const auto side =
       static_cast<std::int64_t>(std::clamp(wanted, static_cast<double>(reach) / 2, 2 * static_cast<double>(reach)));
-  std::vector<std::pair<std::int64_t, std::int64_t>> square;
+  const std::int64_t across = (high.x - low.x) / side + 1, down = (high.y - low.y) / side + 1;
+  std::vector<SquareKey> square;
   square.reserve(points.size());
-  for (const WavePoint& p : points) square.emplace_back(floor_quotient(p.y, side), floor_quotient(p.x, side));
+  for (const WavePoint& p : points) square.emplace_back((p.y - low.y) / side, (p.x - low.x) / side);
   PointSquares squares;
-  squares.order.resize(points.size());
-  std::iota(squares.order.begin(), squares.order.end(), 0U);
-  std::ranges::stable_sort(squares.order, {}, [&](std::uint32_t i) { return square[i]; });
+  const bool are_few =
+      static_cast<double>(across) * static_cast<double>(down) <= 8.0 * static_cast<double>(points.size());
+  squares.order = are_few ? counted_order(square, across, down) : sorted_order(square);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i == 0 || square[squares.order[i]] != square[squares.order[i - 1]]) squares.first.push_back(i);
   }
@@ -49,14 +68,37 @@ PointSquares squares_of(std::span<const WavePoint> points, const GaborShape& sha
   return squares;
 }
 
-/// part of a kernel at places where its form is below the limit.
-__attribute__((target_clones("default", "avx2", "avx512f"))) void add_at_places(
-    float limit, const std::complex<float>& color, float weight, const float* column_form, const float* row_form,
-    const float* column_real, const float* column_imaginary, const float* row_real, const float* row_imaginary,
-    int count, float* out) {
+/// Distances of places from a kernel's middle, and those along x of a sheared window; whether any is in its box.
+__attribute__((target_clones("default", "avx2", "avx512f"))) bool set_distances(
+    const std::int32_t* x, const std::int32_t* y, std::int32_t middle_x, std::int32_t middle_y, std::int32_t reach_x,
+    std::int32_t reach_y, double shear, int count, std::int32_t* column, std::int32_t* row, std::int32_t* shifted) {
+  int inside = 0;
+  if (shear != 0) {
+    for (int i = 0; i < count; ++i) shifted[i] = x[i] - middle_x + sheared(shear, y[i] - middle_y);
+  }
   for (int i = 0; i < count; ++i) {
-    const float real = weight * (color.real() * row_real[i] - color.imag() * row_imaginary[i]);
-    const float imaginary = weight * (color.real() * row_imaginary[i] + color.imag() * row_real[i]);
+    const std::int32_t dx = x[i] - middle_x, dy = y[i] - middle_y;
+    inside |= static_cast<int>(dx < reach_x) & static_cast<int>(-dx < reach_x) & static_cast<int>(dy < reach_y) &
+              static_cast<int>(-dy < reach_y);
+    column[i] = dx, row[i] = dy;
+  }
+  return inside != 0;
+}
+
+/// Part of a kernel at places where its form is below the limit.
+__attribute__((target_clones("default", "avx2", "avx512f"))) void add_at_places(float limit,
+                                                                                const std::complex<float>& color,
+                                                                                float weight,
+                                                                                const KernelPlaces& columns,
+                                                                                const KernelPlaces& rows, float* out) {
+  const float *column_form = columns.form(), *row_form = rows.form(), *column_real = columns.real(),
+              *column_imaginary = columns.imaginary(), *row_real = rows.real(), *row_imaginary = rows.imaginary();
+  const float color_real = color.real(), color_imaginary = color.imag();
+  const int count = columns.count();
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) {
+    const float real = weight * (color_real * row_real[i] - color_imaginary * row_imaginary[i]);
+    const float imaginary = weight * (color_real * row_imaginary[i] + color_imaginary * row_real[i]);
     const float value = real * column_real[i] - imaginary * column_imaginary[i];
     out[i] += column_form[i] < limit - row_form[i] ? value : 0.0F;
   }
@@ -71,8 +113,15 @@ class KernelPoints {
   /// Starts sums of zero at the points of that order.
   void start(std::span<const WavePoint> points, std::span<const std::uint32_t> order) {
     count_ = static_cast<int>(order.size());
+    base_ = points[order.front()];
+    low_ = high_ = base_;
     x_.clear(), y_.clear();
-    for (const std::uint32_t i : order) x_.push_back(points[i].x), y_.push_back(points[i].y);
+    for (const std::uint32_t i : order) {
+      const WavePoint& p = points[i];
+      low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
+      high_ = {std::max(high_.x, p.x), std::max(high_.y, p.y)};
+      x_.push_back(place_distance(p.x, base_.x)), y_.push_back(place_distance(p.y, base_.y));
+    }
     const auto room =
         static_cast<std::size_t>((count_ + KernelPlaces::block - 1) / KernelPlaces::block) * KernelPlaces::block;
     stride_ = room;
@@ -80,34 +129,30 @@ class KernelPoints {
     shifted_.resize(room);
   }
   PlaneRectangle box() const {
-    const auto [left, right] = std::ranges::minmax(x_);
-    const auto [top, bottom] = std::ranges::minmax(y_);
-    return {left - shape_.reach_x, top - shape_.reach_y, right + shape_.reach_x + 1, bottom + shape_.reach_y + 1};
+    return {low_.x - shape_.reach_x, low_.y - shape_.reach_y, high_.x + shape_.reach_x + 1,
+            high_.y + shape_.reach_y + 1};
   }
 
   void add(const GaborImpact& impact) {
     rows_.resize(count_), columns_.resize(count_);
-    bool reaches = false;
-    for (int i = 0; i < count_; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      const std::int64_t dx = x_[at] - impact.x, dy = y_[at] - impact.y;
-      reaches = reaches || (std::abs(dx) < shape_.reach_x && std::abs(dy) < shape_.reach_y);
-      const std::int64_t shift = shape_.shear == 0 ? 0 : std::llround(shape_.shear * static_cast<double>(dy));
-      columns_.distance()[i] = place_distance(dx), rows_.distance()[i] = place_distance(dy);
-      shifted_[at] = place_distance(dx + shift);
+    std::int32_t *along = columns_.distance(), *across = rows_.distance();
+    const auto reach_x = static_cast<std::int32_t>(place_coordinate(shape_.reach_x)) + 2;
+    const auto reach_y = static_cast<std::int32_t>(place_coordinate(shape_.reach_y)) + 2;
+    if (!set_distances(x_.data(), y_.data(), place_distance(impact.x, base_.x), place_distance(impact.y, base_.y),
+                       reach_x, reach_y, shape_.shear, count_, along, across, shifted_.data())) {
+      return;
     }
-    if (!reaches) return;
+    if (shape_.shear != 0) along = shifted_.data();
     const std::int32_t* frequency = shape_.frequency.data() + std::size_t{2} * impact.entry;
     rows_.set_waves(frequency[1], impact.phase);
-    rows_.set_windows(shape_.across, rows_.distance());
+    rows_.set_windows(shape_.across, rows_.distance(), 0, count_);
     columns_.set_waves(frequency[0], 0);
-    columns_.set_windows(shape_.along, shifted_.data());
+    columns_.set_windows(shape_.along, along, 0, count_);
     for (int c = 0; c < channels_; ++c) {
       const auto channel = static_cast<std::size_t>(c);
-      add_at_places(shape_.limit,
-                    band_.color[std::size_t{impact.entry} * static_cast<std::size_t>(channels_) + channel],
-                    impact.weight, columns_.form(), rows_.form(), columns_.real(), columns_.imaginary(), rows_.real(),
-                    rows_.imaginary(), count_, sums_.data() + channel * stride_);
+      const std::size_t entry = std::size_t{impact.entry} * static_cast<std::size_t>(channels_);
+      add_at_places(shape_.limit, band_.color[entry + channel], impact.weight, columns_, rows_,
+                    sums_.data() + channel * stride_);
     }
   }
 
@@ -124,7 +169,8 @@ class KernelPoints {
   const GaborShape& shape_;
   int count_ = 0;
   std::size_t stride_ = 0;
-  std::vector<std::int64_t> x_, y_;
+  WavePoint base_, low_, high_;
+  std::vector<std::int32_t> x_, y_;  ///< from the base, 2^−20 pixel
   std::vector<std::int32_t> shifted_;
   std::vector<float> sums_;
   KernelPlaces rows_, columns_;
@@ -136,8 +182,8 @@ void sum_gabor(const GaborField& field, Seed seed, std::span<const WavePoint> po
   std::ranges::fill(out, 0.0F);
   std::vector<GaborShape> shapes(field.bands.begin(), field.bands.end());
   const std::size_t total = points.size();
-  for (std::size_t first = 0; first < total; first += points_a_task) {
-    const std::size_t count = std::min(points_a_task, total - first);
+  for (std::size_t first = 0; first < total; first += points_at_once) {
+    const std::size_t count = std::min(points_at_once, total - first);
     const std::span<const WavePoint> some = points.subspan(first, count);
     for (std::size_t b = 0; b < field.bands.size(); ++b) {
       const PointSquares squares = squares_of(some, shapes[b]);

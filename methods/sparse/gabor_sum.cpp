@@ -11,14 +11,11 @@ namespace textonbench {
 namespace {
 
 constexpr double units_a_pixel = static_cast<double>(plane_pixel);
-/// Side of the rectangles whose impacts are drawn at a time, in raster pixels.
-constexpr int gabor_tile = 64;
+/// Least and greatest side of the rectangles whose impacts are drawn at a time, in raster pixels.
+constexpr int least_gabor_tile = 64;
+constexpr int most_gabor_tile = 256;
 
 std::int64_t plane_coordinate(double at) { return static_cast<std::int64_t>(std::floor(at * units_a_pixel)); }
-
-std::int64_t sheared(const GaborShape& shape, std::int64_t distance) {
-  return shape.shear == 0 ? 0 : std::llround(shape.shear * static_cast<double>(distance));
-}
 
 PlaneRectangle with_margin(std::int64_t left, std::int64_t top, std::int64_t right, std::int64_t bottom,
                            const GaborShape& shape) {
@@ -36,23 +33,41 @@ ColoredPart times_color(float real, float imaginary, const std::complex<float>& 
           weight * (color.real() * imaginary + color.imag() * real)};
 }
 
-__attribute__((target_clones("default", "avx2", "avx512f"))) void add_row(const ColoredPart& row, const float* real,
-                                                                          const float* imaginary, int count,
-                                                                          float* out) {
-  for (int x = 0; x < count; ++x) out[x] += row.real * real[x] - row.imaginary * imaginary[x];
-}
+/// Some rows of a kernel. Row j has the columns first[j] … end[j] − 1 and a part for each channel.
+struct KernelRows {
+  const float* real = nullptr;
+  const float* imaginary = nullptr;
+  const int* first = nullptr;
+  const int* end = nullptr;
+  const ColoredPart* parts = nullptr;
+  int rows = 0;
+  int channels = 0;
+  float* out = nullptr;
+  std::ptrdiff_t row_stride = 0;
+  std::ptrdiff_t plane_stride = 0;
+};
 
-/// A row of three channels.
-__attribute__((target_clones("default", "avx2", "avx512f"))) void add_color_row(const ColoredPart* row,
-                                                                                const float* real,
-                                                                                const float* imaginary, int count,
-                                                                                float* first, float* second,
-                                                                                float* third) {
-  for (int x = 0; x < count; ++x) {
-    const float re = real[x], im = imaginary[x];
-    first[x] += row[0].real * re - row[0].imaginary * im;
-    second[x] += row[1].real * re - row[1].imaginary * im;
-    third[x] += row[2].real * re - row[2].imaginary * im;
+__attribute__((target_clones("default", "avx2", "avx512f"))) void add_rows(const KernelRows& kernel) {
+  const float *real = kernel.real, *imaginary = kernel.imaginary;
+  for (int j = 0; j < kernel.rows; ++j) {
+    const ColoredPart* part = kernel.parts + std::ptrdiff_t{j} * kernel.channels;
+    float* out = kernel.out + j * kernel.row_stride;
+    if (kernel.channels == 3) {
+      float *second = out + kernel.plane_stride, *third = second + kernel.plane_stride;
+      const ColoredPart one = part[0], two = part[1], three = part[2];
+#pragma GCC ivdep
+      for (int x = kernel.first[j]; x < kernel.end[j]; ++x) {
+        out[x] += one.real * real[x] - one.imaginary * imaginary[x];
+        second[x] += two.real * real[x] - two.imaginary * imaginary[x];
+        third[x] += three.real * real[x] - three.imaginary * imaginary[x];
+      }
+      continue;
+    }
+    for (int c = 0; c < kernel.channels; ++c, out += kernel.plane_stride) {
+      const ColoredPart one = part[c];
+#pragma GCC ivdep
+      for (int x = kernel.first[j]; x < kernel.end[j]; ++x) out[x] += one.real * real[x] - one.imaginary * imaginary[x];
+    }
   }
 }
 
@@ -73,69 +88,86 @@ class KernelRaster {
     if (from >= to || above >= below) return;
     const std::int32_t* frequency = shape_.frequency.data() + std::size_t{2} * impact.entry;
     rows_.resize(static_cast<int>(below - above));
-    for (int j = 0; j < rows_.count(); ++j) rows_.distance()[j] = place_distance(above[j] - impact.y);
+    for (int j = 0; j < rows_.count(); ++j) rows_.distance()[j] = place_distance(above[j], impact.y);
     rows_.set_waves(frequency[1], impact.phase);
-    rows_.set_windows(shape_.across, rows_.distance());
+    rows_.set_windows(shape_.across, rows_.distance(), 0, rows_.count());
     columns_.resize(static_cast<int>(to - from));
-    for (int i = 0; i < columns_.count(); ++i) columns_.distance()[i] = place_distance(from[i] - impact.x);
+    for (int i = 0; i < columns_.count(); ++i) columns_.distance()[i] = place_distance(from[i], impact.x);
     columns_.set_waves(frequency[0], 0);
-    if (shape_.shear == 0) columns_.set_windows(shape_.along, columns_.distance());
     const int left = static_cast<int>(from - x.begin()), top = static_cast<int>(above - y.begin());
-    int first = columns_.count() / 2, end = first;
+    color_rows(impact);
+    first_.resize(parts_.size()), end_.resize(parts_.size());
+    if (shape_.shear == 0) {
+      columns_.set_windows(shape_.along, columns_.distance(), 0, columns_.count());
+      for (int j = 0; j < rows_.count(); ++j) find_chord(columns_.distance(), j, 0, columns_.count());
+      add_some(0, rows_.count(), left, top, out);
+      return;
+    }
     for (int j = 0; j < rows_.count(); ++j) {
-      if (shape_.shear != 0) shear_columns(&*from, impact.x - sheared(shape_, above[j] - impact.y));
-      find_chord(shape_.limit - rows_.form()[j], first, end);
-      if (first < end) add_row_of(impact, j, left + first, top + j, first, end - first, out);
+      shear_columns(j);
+      add_some(j, j + 1, left, top, out);
     }
   }
 
  private:
-  void shear_columns(const std::int64_t* x, std::int64_t middle) {
+  /// Parts along y of all rows, in the impact's colors.
+  void color_rows(const GaborImpact& impact) {
+    const auto channels = static_cast<std::size_t>(channels_);
+    const std::complex<float>* color = band_.color.data() + std::size_t{impact.entry} * channels;
+    parts_.resize(static_cast<std::size_t>(rows_.count()) * channels);
+    for (std::size_t j = 0; j < static_cast<std::size_t>(rows_.count()); ++j) {
+      for (std::size_t c = 0; c < channels; ++c) {
+        parts_[j * channels + c] = times_color(rows_.real()[j], rows_.imaginary()[j], color[c], impact.weight);
+      }
+    }
+  }
+
+  /// Windows of a row's columns, around a middle of its own.
+  void shear_columns(int row) {
+    const std::int32_t shift = sheared(shape_.shear, rows_.distance()[row]);
+    const std::int32_t* distance = columns_.distance();
     shifted_.resize(static_cast<std::size_t>(columns_.count() + KernelPlaces::block));
-    for (int i = 0; i < columns_.count(); ++i) shifted_[static_cast<std::size_t>(i)] = place_distance(x[i] - middle);
-    columns_.set_windows(shape_.along, shifted_.data());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(columns_.count()); ++i) shifted_[i] = distance[i] + shift;
+    const auto [first, end] = near_chord(shifted_.data(), row);
+    columns_.set_windows(shape_.along, shifted_.data(), first, end);
+    find_chord(shifted_.data(), row, first, end);
   }
 
-  /// The columns whose forms are below `room`: neighbors of each other, and of those of the row before.
-  void find_chord(float room, int& first, int& end) const {
-    const float* form = columns_.form();
-    const int count = columns_.count();
-    if (first == end) {
-      first = static_cast<int>(std::min_element(form, form + count) - form);
-      end = first;
-      if (form[first] < room) ++end;
-    }
-    while (first < end && form[first] >= room) ++first;
-    while (end > first && form[end - 1] >= room) --end;
-    if (first == end) return find_again(room, first, end);
-    while (first > 0 && form[first - 1] < room) --first;
-    while (end < count && form[end] < room) ++end;
-  }
-  /// Where it has nothing in common with the row before.
-  void find_again(float room, int& first, int& end) const {
-    const float* form = columns_.form();
-    const int count = columns_.count();
-    first = static_cast<int>(std::min_element(form, form + count) - form), end = first;
-    while (end < count && form[end] < room) ++end;
-    while (first > 0 && first < end && form[first - 1] < room) --first;
+  /// Columns of a row that its chord lies in, and two more on both sides.
+  std::pair<int, int> near_chord(const std::int32_t* distance, int row) const {
+    const float room = shape_.limit - rows_.form()[row];
+    if (!(room > 0)) return {0, 0};
+    const double half = std::sqrt(double{room} / double{shape_.along}) * 0x1p20;
+    const int last = columns_.count() - 1;
+    const double step = last > 0 ? (static_cast<double>(distance[last]) - distance[0]) / last : 1;
+    const double from = (-half - distance[0]) / step, to = (half - distance[0]) / step;
+    return {static_cast<int>(std::clamp(from - 2, 0.0, last + 1.0)),
+            static_cast<int>(std::clamp(to + 3, 0.0, last + 1.0))};
   }
 
-  void add_row_of(const GaborImpact& impact, int row, int x, int y, int first, int count, Image& out) const {
-    const std::complex<float>* color =
-        band_.color.data() + std::size_t{impact.entry} * static_cast<std::size_t>(channels_);
-    const float real = rows_.real()[row], imaginary = rows_.imaginary()[row];
-    if (channels_ == 3) {
-      const ColoredPart parts[] = {times_color(real, imaginary, color[0], impact.weight),
-                                   times_color(real, imaginary, color[1], impact.weight),
-                                   times_color(real, imaginary, color[2], impact.weight)};
-      add_color_row(parts, columns_.real() + first, columns_.imaginary() + first, count, out.row(0, y).data() + x,
-                    out.row(1, y).data() + x, out.row(2, y).data() + x);
-      return;
-    }
-    for (int c = 0; c < channels_; ++c) {
-      add_row(times_color(real, imaginary, color[c], impact.weight), columns_.real() + first,
-              columns_.imaginary() + first, count, out.row(c, y).data() + x);
-    }
+  /// The columns of a row, among some, whose form leaves room: neighbors of each other.
+  void find_chord(const std::int32_t* distance, int row, int low, int high) {
+    const auto at = static_cast<std::size_t>(row);
+    auto [first, end] = near_chord(distance, row);
+    first = std::max(first, low), end = std::min(end, high);
+    const float room = shape_.limit - rows_.form()[row];
+    const float* form = columns_.form();
+    while (first < end && !(form[first] < room)) ++first;
+    while (end > first && !(form[end - 1] < room)) --end;
+    first_[at] = first, end_[at] = end;
+  }
+
+  void add_some(int first, int end, int left, int top, Image& out) const {
+    add_rows({.real = columns_.real(),
+              .imaginary = columns_.imaginary(),
+              .first = first_.data() + first,
+              .end = end_.data() + first,
+              .parts = parts_.data() + std::ptrdiff_t{first} * channels_,
+              .rows = end - first,
+              .channels = channels_,
+              .out = out.row(0, top + first).data() + left,
+              .row_stride = out.row_stride(),
+              .plane_stride = out.row_stride() * out.height()});
   }
 
   int channels_;
@@ -143,19 +175,33 @@ class KernelRaster {
   GaborShape shape_;
   KernelPlaces rows_, columns_;
   std::vector<std::int32_t> shifted_;
+  std::vector<ColoredPart> parts_;
+  std::vector<int> first_, end_;
 };
+
+/// Side of the tiles of a raster: kernels reach beyond them by less than a half of it, where it is not the greatest.
+int gabor_tile(const GaborField& field, double step) {
+  double reach = 0;
+  for (const GaborBand& band : field.bands) {
+    reach = std::max({reach, band.window.half_width(), band.window.half_height()});
+  }
+  int side = least_gabor_tile;
+  while (side < most_gabor_tile && side * step < 4 * reach) side *= 2;
+  return side;
+}
 
 }  // namespace
 
 void add_gabor(const GaborField& field, Seed seed, const WaveRaster& raster, Image& out) {
-  const int across = (out.width() + gabor_tile - 1) / gabor_tile, down = (out.height() + gabor_tile - 1) / gabor_tile;
+  const int side = gabor_tile(field, raster.step);
+  const int across = (out.width() + side - 1) / side, down = (out.height() + side - 1) / side;
   parallel_for(across * down, [&](int tile) {
-    const int left = tile % across * gabor_tile, top = tile / across * gabor_tile;
+    const int left = tile % across * side, top = tile / across * side;
     std::vector<std::int64_t> x, y;
-    for (int i = left; i < std::min(left + gabor_tile, out.width()); ++i) {
+    for (int i = left; i < std::min(left + side, out.width()); ++i) {
       x.push_back(plane_coordinate(raster.x + raster.step * i));
     }
-    for (int i = top; i < std::min(top + gabor_tile, out.height()); ++i) {
+    for (int i = top; i < std::min(top + side, out.height()); ++i) {
       y.push_back(plane_coordinate(raster.y + raster.step * i));
     }
     std::vector<GaborImpact> impacts;

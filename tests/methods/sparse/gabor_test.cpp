@@ -106,6 +106,23 @@ TEST(AddGabor, RasterHasTheBitsOfThePoints) {
   }
 }
 
+/// Points are grouped by squares of the plane, here crowded, far apart, and alone.
+TEST(SumGabor, PointsDoNotDependOnEachOther) {
+  const GaborField field = test_field(3);
+  std::vector<WavePoint> points;
+  points.reserve(330);
+  for (std::int64_t i = 0; i < 300; ++i)
+    points.push_back({i * 7919 % 40 * plane_pixel / 3, i * 104729 % 50 * plane_pixel / 7});
+  for (std::int64_t i = 0; i < 30; ++i)
+    points.push_back({(i - 15) * (plane_pixel << 34), (i * i - 99) * (plane_pixel << 27)});
+  std::vector<float> together(3 * points.size()), alone(3);
+  sum_gabor(field, Seed{8}, points, together);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    sum_gabor(field, Seed{8}, std::span(points).subspan(i, 1), alone);
+    for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(alone[c], together[c * points.size() + i]) << i;
+  }
+}
+
 /// ∫ g(y) g(y + v) dy on a grid of 1/16 pixel.
 TEST(GaborCorrelation, IsTheIntegral) {
   for (const GaborWindow& window :
