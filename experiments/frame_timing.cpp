@@ -79,6 +79,10 @@ std::vector<double> time_recipe(Context& context, const ShaderRecipe& recipe, co
 }
 
 /// Fetches a second of a shader that does nothing else.
+nlohmann::ordered_json or_null(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+}
+
 double fetch_ceiling(Context& context, const ShaderRecipe& recipe, const FrameTimingOptions& options, double samples) {
   const FrameTimes times = frame_times(time_recipe(context, recipe, options, ceiling_share));
   return 1e3 * recipe.useful_fetches * samples / times.median;
@@ -112,9 +116,10 @@ FrameTiming time_frames(Context& context, const ShaderRecipe& recipe, const Fram
   timing.ns_per_pixel = 1e9 * seconds / pixels;
   timing.useful_fetches_per_pixel = recipe.useful_fetches * samples / pixels;
   timing.fetches_per_second = recipe.useful_fetches * samples / seconds;
+  if (recipe.textures.empty()) return timing;
   timing.coherent_ceiling = fetch_ceiling(context, fetch_ceiling_recipe(recipe, true), options, samples);
   timing.incoherent_ceiling = fetch_ceiling(context, fetch_ceiling_recipe(recipe, false), options, samples);
-  timing.fetch_ceiling_fraction = timing.fetches_per_second / timing.coherent_ceiling;
+  timing.fetch_ceiling_fraction = timing.fetches_per_second / *timing.coherent_ceiling;
   return timing;
 }
 
@@ -127,8 +132,9 @@ nlohmann::ordered_json to_json(const FrameTiming& timing) {
           {"ns_per_pixel", timing.ns_per_pixel},
           {"fetches_per_pixel", timing.useful_fetches_per_pixel},
           {"fetches_per_second", timing.fetches_per_second},
-          {"fetch_ceiling", {{"coherent", timing.coherent_ceiling}, {"incoherent", timing.incoherent_ceiling}}},
-          {"fetch_ceiling_fraction", timing.fetch_ceiling_fraction}};
+          {"fetch_ceiling",
+           {{"coherent", or_null(timing.coherent_ceiling)}, {"incoherent", or_null(timing.incoherent_ceiling)}}},
+          {"fetch_ceiling_fraction", or_null(timing.fetch_ceiling_fraction)}};
 }
 
 nlohmann::ordered_json to_json(const ContextInfo& info) {

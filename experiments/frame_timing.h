@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -31,20 +32,19 @@ struct FrameTiming {
   double ns_per_pixel = 0;              ///< of all pixels of the frame
   double useful_fetches_per_pixel = 0;  ///< mean over them
   double fetches_per_second = 0;        ///< useful ones
-  /// Of a shader that only fetches (gpu/fetch_ceiling.h), on the same path and frame.
-  double coherent_ceiling = 0, incoherent_ceiling = 0;
-  double fetch_ceiling_fraction = 0;  ///< fetches_per_second / coherent_ceiling
+  /// Of a shader that only fetches (gpu/fetch_ceiling.h), on the same path and frame; of none without textures.
+  std::optional<double> coherent_ceiling, incoherent_ceiling;
+  std::optional<double> fetch_ceiling_fraction;  ///< fetches_per_second / coherent_ceiling
 };
 
 FrameTimes frame_times(std::vector<double> milliseconds);
 
 /// Draws the frame again and again, timed by queries of the graphics processor, or of software by the clock. Throws as
-/// Renderer does, and std::invalid_argument for a recipe without a texture or a frame without a pixel that shows the
-/// plane.
+/// Renderer does, and std::invalid_argument for a frame without a pixel that shows the plane.
 FrameTiming time_frames(Context& context, const ShaderRecipe& recipe, const FrameTimingOptions& options);
 
 /// Keys: path, frames, ms {median, min, p05, p95}, frames_per_second, ns_per_pixel, fetches_per_pixel,
-/// fetches_per_second, fetch_ceiling {coherent, incoherent}, fetch_ceiling_fraction.
+/// fetches_per_second, fetch_ceiling {coherent, incoherent}, fetch_ceiling_fraction, the last two null without textures.
 nlohmann::ordered_json to_json(const FrameTiming& timing);
 /// Keys: context, renderer, vendor, version, software.
 nlohmann::ordered_json to_json(const ContextInfo& info);

@@ -124,7 +124,10 @@ class GpuDrawer : public FrameDrawer {
     if (metric == "frame_ms" || metric == "software_frame_ms") return timing.milliseconds.median;
     if (metric == "frame_ns_per_pixel" || metric == "software_ns_per_pixel") return timing.ns_per_pixel;
     if (metric == "frame_fetches_per_second") return timing.fetches_per_second;
-    if (metric == "frame_ceiling_fraction") return timing.fetch_ceiling_fraction;
+    if (metric == "frame_ceiling_fraction") {
+      if (timing.fetch_ceiling_fraction) return *timing.fetch_ceiling_fraction;
+      throw std::invalid_argument(fmt::format("{}: expected a method whose shader fetches from textures", metric));
+    }
     throw std::logic_error(fmt::format("nobody measures the frame metric \"{}\"", metric));
   }
 

@@ -72,7 +72,7 @@ std::vector<std::string> frame_cells(const FrameRow& row, const FrameTable& tabl
           format_number(n.frames_per_second) + (row.software && !is_of_software(table) ? " in software" : ""),
           format_number(n.ns_per_pixel),
           format_number(1e-9 * n.fetches_per_second, 3),
-          format_number(n.ceiling_fraction, 2)};
+          n.ceiling_fraction > 0 ? format_number(n.ceiling_fraction, 2) : nothing};
 }
 
 std::string shared_obstacle(const FrameTable& table) {

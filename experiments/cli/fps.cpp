@@ -44,15 +44,9 @@ Frame timed_frame(const FpsOptions& options, Extent size) {
   return frame;
 }
 
-Extent texton_extent(const Model& model, const ShaderRecipe& recipe) {
-  const SplineTexton* texton = model.spline_texton();
-  return texton != nullptr ? texton->coefficients.extent() : recipe.textures.front().size;
-}
-
 /// What all paths have in common.
 nlohmann::ordered_json describe(const FpsOptions& options, const Fitted& fitted, const ContextInfo& info,
                                 const ShaderRecipe& recipe) {
-  const Extent texton = texton_extent(*fitted.model, recipe);
   nlohmann::ordered_json document = to_json(info);
   document["method"] = options.model.method;
   document["exemplar"] = options.model.exemplar;
@@ -60,9 +54,13 @@ nlohmann::ordered_json describe(const FpsOptions& options, const Fitted& fitted,
   document["size"] = {fitted.domain.size.width, fitted.domain.size.height};
   document["supersampling"] = options.supersampling;
   document["ground"] = options.ground;
-  document["texton"] = {texton.width, texton.height};
   document["channels"] = recipe.channels;
-  document["half"] = recipe.textures.front().half_float;
+  if (!recipe.textures.empty()) {
+    const SplineTexton* spline = fitted.model->spline_texton();
+    const Extent texton = spline != nullptr ? spline->coefficients.extent() : recipe.textures.front().size;
+    document["texton"] = {texton.width, texton.height};
+    document["half"] = recipe.textures.front().half_float;
+  }
   for (const auto& [name, value] : fitted.params) {
     std::visit([&document, &key = name](const auto& v) { document["params"][key] = v; }, value);
   }
@@ -70,6 +68,7 @@ nlohmann::ordered_json describe(const FpsOptions& options, const Fitted& fitted,
 }
 
 std::string in_units(double value) { return fmt::format("{:.4g}", value); }
+std::string in_giga(const std::optional<double>& value) { return value ? in_units(1e-9 * *value) : "-"; }
 
 void print_timings(const ContextInfo& info, const Fitted& fitted, const std::vector<FrameTiming>& timings) {
   const char* const per_second = info.software ? "SOFTWARE FPS" : "FPS";
@@ -82,8 +81,8 @@ void print_timings(const ContextInfo& info, const Fitted& fitted, const std::vec
     rows.push_back({std::string(shader_path_name(timing.path)), std::to_string(timing.frames), in_units(ms.median),
                     in_units(ms.min), in_units(ms.p05), in_units(ms.p95), in_units(timing.frames_per_second),
                     in_units(timing.ns_per_pixel), in_units(1e-9 * timing.fetches_per_second),
-                    in_units(1e-9 * timing.coherent_ceiling), in_units(1e-9 * timing.incoherent_ceiling),
-                    in_units(timing.fetch_ceiling_fraction)});
+                    in_giga(timing.coherent_ceiling), in_giga(timing.incoherent_ceiling),
+                    timing.fetch_ceiling_fraction ? in_units(*timing.fetch_ceiling_fraction) : "-"});
   }
   print_table({{"PATH"},
                {"FRAMES", Align::right},

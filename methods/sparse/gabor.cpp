@@ -22,6 +22,15 @@ bool is_in_reach(const Point2& p) {
   return std::abs(p.x) <= furthest_impact_place && std::abs(p.y) <= furthest_impact_place;
 }
 
+/// Operations of a kernel on a raster of whole pixels: two multiplications and additions a channel and pixel, some
+/// fifty for the wave and window of each column and row, six for each row and channel that is multiplied by its color;
+/// and those of a window at each pixel where it is skewed.
+double kernel_operations(const GaborWindow& window, int channels) {
+  const double columns = 2 * window.half_width(), rows = 2 * window.half_height();
+  const double of_pixel = 4 * channels + (window.xy == 0 ? 0 : 25);
+  return of_pixel * window.area() + 50 * (columns + rows) + 6 * channels * rows;
+}
+
 /// Part of the power beyond half a cycle a step along an axis.
 double aliased_power(const GaborField& field, double step) {
   double sum = 0, beyond = 0;
@@ -108,8 +117,7 @@ class GaborNoise final : public Model, public Gaussian, public Procedural {
     Footprint sum;
     for (const GaborBand& band : field_.bands) {
       sum.model_bytes += band.bytes();
-      // Of each kernel that reaches a pixel two multiplications and additions a channel; columns and rows are few.
-      sum.operations_per_pixel += band.intensity * band.window.area() * 4 * field_.channels;
+      sum.operations_per_pixel += band.intensity * kernel_operations(band.window, field_.channels);
     }
     return sum;
   }
