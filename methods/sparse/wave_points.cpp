@@ -14,8 +14,8 @@
 namespace textonbench {
 namespace {
 
-using Lanes = SixteenLanes;
-constexpr int lanes = Lanes::count;
+using PointLanes = SixteenLanes;
+constexpr int lanes = PointLanes::count;
 
 /// Points of one task: its cells are drawn anew.
 constexpr std::size_t task_points = 1024;
@@ -30,7 +30,7 @@ struct WindowsAround {
 
 __attribute__((target_clones("default", "avx2", "avx512f"))) void windows_at(
     const std::array<float, lrp_window_terms>& polynomial, const float* x, const float* y, WindowsAround& windows) {
-  using Floats = Lanes::Floats;
+  using Floats = PointLanes::Floats;
   const Floats dx = *reinterpret_cast<const Floats*>(x), dy = *reinterpret_cast<const Floats*>(y);
   Floats t = 1 - (dx * dx + dy * dy) * (1 / 2.25F);
   t = t > 0 ? t : Floats{};

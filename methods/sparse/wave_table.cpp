@@ -7,15 +7,15 @@
 namespace textonbench {
 namespace {
 
-using Lanes = EightLanes;
+using TableLanes = EightLanes;
 
 __attribute__((target_clones("default", "avx2"))) void fill_bin(std::uint32_t k, std::span<const std::uint32_t> turns,
                                                                 float* cosines, float* sines) {
-  for (std::size_t i = 0; i < turns.size(); i += Lanes::count) {
-    Lanes::Floats cosine, sine;
-    cos_sin_lanes<Lanes>(*reinterpret_cast<const Lanes::LooseWords*>(turns.data() + i) * k, cosine, sine);
-    *reinterpret_cast<Lanes::LooseFloats*>(cosines + i) = cosine;
-    *reinterpret_cast<Lanes::LooseFloats*>(sines + i) = sine;
+  for (std::size_t i = 0; i < turns.size(); i += TableLanes::count) {
+    TableLanes::Floats cosine, sine;
+    cos_sin_lanes<TableLanes>(*reinterpret_cast<const TableLanes::LooseWords*>(turns.data() + i) * k, cosine, sine);
+    *reinterpret_cast<TableLanes::LooseFloats*>(cosines + i) = cosine;
+    *reinterpret_cast<TableLanes::LooseFloats*>(sines + i) = sine;
   }
 }
 

@@ -64,6 +64,21 @@ TEST_F(FpsTest, JsonHasTheDocumentedFields) {
   EXPECT_GT(json["fetch_ceiling"]["incoherent"], 0);
 }
 
+/// Local random-phase and Gabor noise read tables, not textures: there is no ceiling of fetches to hold them against.
+TEST_F(FpsTest, ShadersWithoutTexturesAreTimed) {
+  std::vector<std::string> arguments = fps({"--size", "16x16", "--frames", "1", "--path", "fragment", "--json"});
+  arguments[1] = "gabor";
+  std::erase_if(arguments, [](const std::string& argument) {
+    return argument == "-p" || argument.find('=') != std::string::npos;
+  });
+  const Outcome outcome = run(arguments);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json json = nlohmann::json::parse(outcome.out);
+  EXPECT_GT(json["ns_per_pixel"], 0);
+  EXPECT_TRUE(json["fetch_ceiling_fraction"].is_null());
+  EXPECT_FALSE(json.contains("texton"));
+}
+
 TEST_F(FpsTest, AllPathsAreRowsAndSoftwareIsCalledSo) {
   const Outcome outcome = run(fps({"--size", "16x16", "--frames", "1", "--path", "all", "--ground"}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;

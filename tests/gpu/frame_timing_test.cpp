@@ -60,8 +60,8 @@ TEST(FrameTimingTest, RatesFollowFromTheMedian) {
   EXPECT_DOUBLE_EQ(timing.ns_per_pixel, 1e6 * ms.median / 2048);
   EXPECT_DOUBLE_EQ(timing.useful_fetches_per_pixel, 36);
   EXPECT_DOUBLE_EQ(timing.fetches_per_second, 36 * 2048 / (1e-3 * ms.median));
-  EXPECT_GT(timing.incoherent_ceiling, 0);
-  EXPECT_DOUBLE_EQ(timing.fetch_ceiling_fraction, timing.fetches_per_second / timing.coherent_ceiling);
+  EXPECT_GT(timing.incoherent_ceiling.value(), 0);
+  EXPECT_DOUBLE_EQ(timing.fetch_ceiling_fraction.value(), timing.fetches_per_second / timing.coherent_ceiling.value());
 
   // Pixels above the ground fetch nothing.
   options.frame.supersampling = 1;
