@@ -140,8 +140,8 @@ void raster(benchmark::State& state, const char* name) {
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   const GaborField field = make_field(name);
   std::vector<WavePoint> points;
-  constexpr int part = 64;
-  points.reserve(std::size_t{part} * part);
+  constexpr std::int64_t part = 64;
+  points.reserve(static_cast<std::size_t>(part * part));
   for (std::int64_t i = 0; i < part * part; ++i) {
     points.push_back({(200 + i % part) * plane_pixel, (200 + i / part) * plane_pixel});
   }

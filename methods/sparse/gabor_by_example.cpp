@@ -10,7 +10,7 @@ namespace textonbench {
 namespace {
 
 GaborFit fit_by_example(const GaborTarget& target, const Params& params) {
-  const GaborFit pursuit =
+  GaborFit pursuit =
       fit_pursuit(target,
                   {.bands = static_cast<int>(params.integer("bands")),
                    .finest = params.number("finest"),

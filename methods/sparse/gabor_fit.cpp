@@ -51,7 +51,7 @@ FittedBand band_parts(const GaborDictionary& dictionary, const std::vector<Spect
       Eigen::MatrixXcd part(channels, channels);
       for (int i = 0; i < channels; ++i) {
         for (int j = 0; j <= i; ++j) {
-          const std::complex<double> v(explained[static_cast<std::size_t>(i * (i + 1) / 2 + j)].at(0, x, y));
+          const std::complex<double> v(explained[color_pair_of(i, j)].at(0, x, y));
           part(i, j) = scale * v;
           part(j, i) = scale * std::conj(v);
         }

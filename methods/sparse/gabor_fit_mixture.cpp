@@ -43,7 +43,7 @@ Eigen::MatrixXcd matrix_at(const std::vector<Spectrum>& products, int channels, 
   Eigen::MatrixXcd p(channels, channels);
   for (int c = 0; c < channels; ++c) {
     for (int d = 0; d <= c; ++d) {
-      const std::complex<double> v(products[static_cast<std::size_t>(c * (c + 1) / 2 + d)].at(0, kx, ky));
+      const std::complex<double> v(products[color_pair_of(c, d)].at(0, kx, ky));
       p(c, d) = is_stored ? v : std::conj(v);
       p(d, c) = std::conj(p(c, d));
     }

@@ -217,7 +217,7 @@ std::vector<PowerGaussian> merge_gaussians(std::vector<PowerGaussian> all, int c
   return all;
 }
 
-PowerMixture fit_gaussians(std::vector<PowerGaussian> start, const Image& power, const MixtureBounds& bounds,
+PowerMixture fit_gaussians(const std::vector<PowerGaussian>& start, const Image& power, const MixtureBounds& bounds,
                            int iterations) {
   const int count = static_cast<int>(start.size());
   std::vector<double> numbers = as_numbers(start);

@@ -37,7 +37,7 @@ struct MixtureBounds {
 ///   min Σ_ξ (sqrt q(ξ) − sqrt p(ξ))²,   q(ξ) the Gaussians at the bins over the number of bins,
 ///
 /// from where they are, by Levenberg and Marquardt.
-PowerMixture fit_gaussians(std::vector<PowerGaussian> start, const Image& power, const MixtureBounds& bounds,
+PowerMixture fit_gaussians(const std::vector<PowerGaussian>& start, const Image& power, const MixtureBounds& bounds,
                            int iterations);
 
 /// The Gaussians' power on a raster, whole plane.

@@ -86,16 +86,13 @@ __attribute__((target_clones("default", "avx2", "avx512f"))) bool set_distances(
 }
 
 /// Part of a kernel at places where its form is below the limit.
-__attribute__((target_clones("default", "avx2", "avx512f"))) void add_at_places(float limit,
-                                                                                const std::complex<float>& color,
-                                                                                float weight,
-                                                                                const KernelPlaces& columns,
-                                                                                const KernelPlaces& rows, float* out) {
+__attribute__((target_clones("default", "avx2", "avx512f"))) void add_at_places(
+    float limit, const std::complex<float>& color, float weight, const KernelPlaces& columns, const KernelPlaces& rows,
+    float* __restrict out) {
   const float *column_form = columns.form(), *row_form = rows.form(), *column_real = columns.real(),
               *column_imaginary = columns.imaginary(), *row_real = rows.real(), *row_imaginary = rows.imaginary();
   const float color_real = color.real(), color_imaginary = color.imag();
   const int count = columns.count();
-#pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     const float real = weight * (color_real * row_real[i] - color_imaginary * row_imaginary[i]);
     const float imaginary = weight * (color_real * row_imaginary[i] + color_imaginary * row_real[i]);

@@ -51,11 +51,11 @@ __attribute__((target_clones("default", "avx2", "avx512f"))) void add_rows(const
   const float *real = kernel.real, *imaginary = kernel.imaginary;
   for (int j = 0; j < kernel.rows; ++j) {
     const ColoredPart* part = kernel.parts + std::ptrdiff_t{j} * kernel.channels;
-    float* out = kernel.out + j * kernel.row_stride;
+    float* __restrict out = kernel.out + j * kernel.row_stride;
     if (kernel.channels == 3) {
-      float *second = out + kernel.plane_stride, *third = second + kernel.plane_stride;
+      float* __restrict second = out + kernel.plane_stride;
+      float* __restrict third = second + kernel.plane_stride;
       const ColoredPart one = part[0], two = part[1], three = part[2];
-#pragma GCC ivdep
       for (int x = kernel.first[j]; x < kernel.end[j]; ++x) {
         out[x] += one.real * real[x] - one.imaginary * imaginary[x];
         second[x] += two.real * real[x] - two.imaginary * imaginary[x];
@@ -65,7 +65,6 @@ __attribute__((target_clones("default", "avx2", "avx512f"))) void add_rows(const
     }
     for (int c = 0; c < kernel.channels; ++c, out += kernel.plane_stride) {
       const ColoredPart one = part[c];
-#pragma GCC ivdep
       for (int x = kernel.first[j]; x < kernel.end[j]; ++x) out[x] += one.real * real[x] - one.imaginary * imaginary[x];
     }
   }
@@ -126,8 +125,9 @@ class KernelRaster {
   void shear_columns(int row) {
     const std::int32_t shift = sheared(shape_.shear, rows_.distance()[row]);
     const std::int32_t* distance = columns_.distance();
-    shifted_.resize(static_cast<std::size_t>(columns_.count() + KernelPlaces::block));
-    for (std::size_t i = 0; i < static_cast<std::size_t>(columns_.count()); ++i) shifted_[i] = distance[i] + shift;
+    const auto count = static_cast<std::size_t>(columns_.count());
+    shifted_.resize(count + KernelPlaces::block);
+    for (std::size_t i = 0; i < count; ++i) shifted_[i] = distance[i] + shift;
     const auto [first, end] = near_chord(shifted_.data(), row);
     columns_.set_windows(shape_.along, shifted_.data(), first, end);
     find_chord(shifted_.data(), row, first, end);

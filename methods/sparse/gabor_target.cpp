@@ -41,7 +41,7 @@ Image trace_of(const std::vector<Spectrum>& products, int channels) {
       const int kx = is_stored ? x : raster.width - x, ky = is_stored || y == 0 ? y : raster.height - y;
       float sum = 0;
       for (int c = 0; c < channels; ++c) {
-        sum += products[static_cast<std::size_t>(c * (c + 1) / 2 + c)].at(0, kx, ky).real();
+        sum += products[color_pair_of(c, c)].at(0, kx, ky).real();
       }
       power.at(0, x, y) = std::max(0.0F, sum);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 #include "methods/base/exemplar.h"
@@ -10,10 +11,16 @@
 
 namespace textonbench {
 
+/// Place of a pair of channels d <= c.
+inline std::size_t color_pair_of(int c, int d) {
+  const auto one = static_cast<std::size_t>(c), other = static_cast<std::size_t>(d);
+  return one * (one + 1) / 2 + other;
+}
+
 /// Frequencies are the bins of a raster; sums over its whole plane are covariances of colors.
 struct GaborTarget {
   std::vector<double> mean;
-  std::vector<Spectrum> products;  ///< P_cd / |Ω|, d <= c, at c (c + 1) / 2 + d, scaled as in gaussian_model.h
+  std::vector<Spectrum> products;  ///< P_cd / |Ω|, d <= c, at color_pair_of(c, d), scaled as in gaussian_model.h
   Image power;                     ///< its trace on the whole plane, even; zero at frequency zero
   double scatter = 1;              ///< variance of a bin as a part of its square, of channels that are alike
 
