@@ -52,7 +52,8 @@ GaborBand make_band(const GaborWindow& window, double mni, int kernels, std::uin
 }
 
 GaborField make_field(std::string_view name) {
-  GaborField field{.channels = 3};
+  GaborField field;
+  field.channels = 3;
   if (name == "directions") {
     field = gabor_field({.frequency = 0.1, .bandwidth = 0.05});
     field.channels = 3;

@@ -44,7 +44,8 @@ FrameTimes frame_times(std::vector<double> milliseconds);
 FrameTiming time_frames(Context& context, const ShaderRecipe& recipe, const FrameTimingOptions& options);
 
 /// Keys: path, frames, ms {median, min, p05, p95}, frames_per_second, ns_per_pixel, fetches_per_pixel,
-/// fetches_per_second, fetch_ceiling {coherent, incoherent}, fetch_ceiling_fraction, the last two null without textures.
+/// fetches_per_second, fetch_ceiling {coherent, incoherent}, fetch_ceiling_fraction, the last two null without
+/// textures.
 nlohmann::ordered_json to_json(const FrameTiming& timing);
 /// Keys: context, renderer, vendor, version, software.
 nlohmann::ordered_json to_json(const ContextInfo& info);

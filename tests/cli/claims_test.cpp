@@ -50,8 +50,7 @@ TEST_F(ClaimsCommandTest, FiltersAndTables) {
   ASSERT_EQ(one["claims"].size(), 1U);
   EXPECT_THAT(one["claims"][0]["reason"].get<std::string>(), HasSubstr("textonbench run lectures2022/claims"));
   const Outcome table = run({"claims", "--id", "T41"});
-  EXPECT_THAT(table.out,
-              AllOf(HasSubstr("method not yet built: quilting"), HasSubstr("1 claims: 0 reproduced")));
+  EXPECT_THAT(table.out, AllOf(HasSubstr("method not yet built: quilting"), HasSubstr("1 claims: 0 reproduced")));
   const Json deviating = run_json({"claims", "--verdict", "deviates"});
   EXPECT_TRUE(deviating["claims"].empty());
 }
