@@ -5,6 +5,7 @@
 // not depend on its neighbors in a call: all routes give the same bits.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -57,9 +58,9 @@ inline std::int32_t place_distance(std::int64_t to, std::int64_t from) {
   return static_cast<std::int32_t>(place_coordinate(to) - place_coordinate(from));
 }
 
-/// s dy of a distance dy.
+/// s dy of a distance dy, where it is below 2^10 pixels.
 inline std::int32_t sheared(double shear, std::int32_t distance) {
-  return static_cast<std::int32_t>(std::floor(shear * distance + 0.5));
+  return static_cast<std::int32_t>(std::floor(std::min(std::max(shear * distance, -0x1p30), 0x1p30) + 0.5));
 }
 
 }  // namespace textonbench

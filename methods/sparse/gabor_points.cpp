@@ -22,7 +22,12 @@ struct PointSquares {
 };
 
 /// Row and column of a square.
-using SquareKey = std::pair<std::int64_t, std::int64_t>;
+using SquareKey = std::pair<std::uint64_t, std::uint64_t>;
+
+/// a − b of coordinates in order, which may be as far apart as 2^63.
+std::uint64_t span_between(std::int64_t a, std::int64_t b) {
+  return static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b);
+}
 
 std::vector<std::uint32_t> sorted_order(const std::vector<SquareKey>& keys) {
   std::vector<std::uint32_t> order(keys.size());
@@ -32,9 +37,9 @@ std::vector<std::uint32_t> sorted_order(const std::vector<SquareKey>& keys) {
 }
 
 /// The same where squares are few, in as many steps as there are of them and of points.
-std::vector<std::uint32_t> counted_order(const std::vector<SquareKey>& keys, std::int64_t across, std::int64_t down) {
-  const auto place = [&](const SquareKey& key) { return static_cast<std::size_t>(key.first * across + key.second); };
-  std::vector<std::uint32_t> next(static_cast<std::size_t>(across * down) + 1), order(keys.size());
+std::vector<std::uint32_t> counted_order(const std::vector<SquareKey>& keys, std::uint64_t across, std::uint64_t down) {
+  const auto place = [&](const SquareKey& key) { return key.first * across + key.second; };
+  std::vector<std::uint32_t> next(across * down + 1), order(keys.size());
   for (const SquareKey& key : keys) ++next[place(key) + 1];
   std::partial_sum(next.begin(), next.end(), next.begin());
   for (std::uint32_t i = 0; i < keys.size(); ++i) order[next[place(keys[i])]++] = i;
@@ -48,15 +53,17 @@ PointSquares squares_of(std::span<const WavePoint> points, const GaborShape& sha
     low = {std::min(low.x, p.x), std::min(low.y, p.y)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y)};
   }
-  const double area = (static_cast<double>(high.x - low.x) + 1) * (static_cast<double>(high.y - low.y) + 1);
+  const double area =
+      (static_cast<double>(span_between(high.x, low.x)) + 1) * (static_cast<double>(span_between(high.y, low.y)) + 1);
   const std::int64_t reach = std::max(shape.reach_x, shape.reach_y);
   const double wanted = std::sqrt(area * points_a_square / static_cast<double>(points.size()));
   const auto side =
-      static_cast<std::int64_t>(std::clamp(wanted, static_cast<double>(reach) / 2, 2 * static_cast<double>(reach)));
-  const std::int64_t across = (high.x - low.x) / side + 1, down = (high.y - low.y) / side + 1;
+      static_cast<std::uint64_t>(std::clamp(wanted, static_cast<double>(reach) / 2, 2 * static_cast<double>(reach)));
+  const std::uint64_t across = span_between(high.x, low.x) / side + 1, down = span_between(high.y, low.y) / side + 1;
   std::vector<SquareKey> square;
   square.reserve(points.size());
-  for (const WavePoint& p : points) square.emplace_back((p.y - low.y) / side, (p.x - low.x) / side);
+  for (const WavePoint& p : points)
+    square.emplace_back(span_between(p.y, low.y) / side, span_between(p.x, low.x) / side);
   PointSquares squares;
   const bool are_few =
       static_cast<double>(across) * static_cast<double>(down) <= 8.0 * static_cast<double>(points.size());
@@ -74,7 +81,11 @@ __attribute__((target_clones("default", "avx2", "avx512f"))) bool set_distances(
     std::int32_t reach_y, double shear, int count, std::int32_t* column, std::int32_t* row, std::int32_t* shifted) {
   int inside = 0;
   if (shear != 0) {
-    for (int i = 0; i < count; ++i) shifted[i] = x[i] - middle_x + sheared(shear, y[i] - middle_y);
+    for (int i = 0; i < count; ++i) {
+      // Of places far outside the window the sum may leave 32 bits, and they are cut for their distance along y.
+      shifted[i] = static_cast<std::int32_t>(static_cast<std::uint32_t>(x[i] - middle_x) +
+                                             static_cast<std::uint32_t>(sheared(shear, y[i] - middle_y)));
+    }
   }
   for (int i = 0; i < count; ++i) {
     const std::int32_t dx = x[i] - middle_x, dy = y[i] - middle_y;
