@@ -3,6 +3,7 @@
 #include <limits>
 #include <vector>
 
+#include "methods/base/aligned_buffer.h"
 #include "methods/base/image.h"
 #include "methods/base/parallel.h"
 #include "methods/sparse/gabor_point_sum.h"
@@ -13,19 +14,20 @@ namespace {
 
 /// Points that are sorted together, and those of one task: whole levels of a tree.
 constexpr std::size_t sorted_points = std::size_t{1} << 16;
-constexpr std::size_t tree_points = 1024;
+constexpr std::size_t tree_points = 2048;
 /// Side of the greatest rectangle whose impacts are drawn at a time, pixels.
 constexpr double widest_draw = 8192;
 
-/// Bits of an 8-bit number, with room for another's between them.
+/// Bits of two 8-bit numbers by turns, the first 16 bits below the second.
 std::uint32_t spread_bits(std::uint32_t v) {
-  v = (v | v << 4U) & 0x0F0FU;
-  v = (v | v << 2U) & 0x3333U;
-  return (v | v << 1U) & 0x5555U;
+  v = (v | v << 4U) & 0x0F0F0F0FU;
+  v = (v | v << 2U) & 0x33333333U;
+  v = (v | v << 1U) & 0x55555555U;
+  return (v | v >> 15U) & 0xFFFFU;
 }
 
-/// Numbers of the points along Morton's curve through 256 x 256 squares around all of them.
-std::vector<std::uint32_t> curve_order(std::span<const WavePoint> points) {
+/// Numbers of the points, from `first` on, along Morton's curve through 256 x 256 squares around all of them.
+void order_by_curve(std::span<const WavePoint> points, std::uint32_t first, std::uint32_t* order) {
   WavePoint low = points.front(), high = low;
   for (const WavePoint& p : points) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y)};
@@ -34,23 +36,27 @@ std::vector<std::uint32_t> curve_order(std::span<const WavePoint> points) {
   const auto widest = static_cast<std::uint64_t>(std::max(high.x - low.x, high.y - low.y));
   unsigned shift = 0;
   while (widest >> shift >= 256) ++shift;
-  std::vector<std::uint64_t> keys(points.size()), half(points.size());
+  // Two passes of a sort by counting, by halves of the key, which is above the number.
+  AlignedBuffer<std::uint64_t> keys(points.size()), half(points.size());
+  std::array<std::array<std::uint32_t, 257>, 2> next{};
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto x = static_cast<std::uint32_t>(static_cast<std::uint64_t>(points[i].x - low.x) >> shift);
-    const auto y = static_cast<std::uint32_t>(static_cast<std::uint64_t>(points[i].y - low.y) >> shift);
-    keys[i] = std::uint64_t{spread_bits(x) | spread_bits(y) << 1U} << 32U | i;
+    const auto x = static_cast<std::uint64_t>(points[i].x - low.x) >> shift;
+    const auto y = static_cast<std::uint64_t>(points[i].y - low.y) >> shift;
+    const std::uint32_t key = spread_bits(static_cast<std::uint32_t>(x | y << 16U));
+    keys.data()[i] = std::uint64_t{key} << 32U | i;
+    ++next[0][(key & 255U) + 1], ++next[1][(key >> 8U) + 1];
   }
-  for (const unsigned digit : {32U, 40U}) {
-    std::array<std::uint32_t, 257> next{};
-    for (const std::uint64_t key : keys) ++next[(key >> digit & 255U) + 1];
-    for (std::size_t i = 1; i < next.size(); ++i) next[i] += next[i - 1];
-    for (const std::uint64_t key : keys) half[next[key >> digit & 255U]++] = key;
-    keys.swap(half);
+  for (std::size_t pass = 0; pass < 2; ++pass) {
+    for (std::size_t i = 1; i < next[pass].size(); ++i) next[pass][i] += next[pass][i - 1];
   }
-  std::vector<std::uint32_t> order;
-  order.reserve(points.size());
-  for (const std::uint64_t key : keys) order.push_back(static_cast<std::uint32_t>(key));
-  return order;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint64_t key = keys.data()[i];
+    half.data()[next[0][key >> 32U & 255U]++] = key;
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint64_t key = half.data()[i];
+    order[next[1][key >> 40U]++] = first + static_cast<std::uint32_t>(key);
+  }
 }
 
 /// A rectangle around points, 2^−22 pixel; none of them where it is inside out.
@@ -76,13 +82,8 @@ class PointTree {
   PointTree(std::span<const WavePoint> points, std::span<const std::uint32_t> order, int channels)
       : points_(points), order_(order), channels_(channels) {
     while (leaves_ < order.size()) leaves_ *= 2;
-    boxes_.resize(2 * leaves_), is_cut_.resize(2 * leaves_);
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      const WavePoint& p = points[order[i]];
-      PointBox& box = boxes_[leaves_ + i];
-      box.left = box.right = p.x, box.top = box.bottom = p.y;
-    }
-    for (std::size_t n = leaves_ - 1; n > 0; --n) boxes_[n] = PointBox::of(boxes_[2 * n], boxes_[2 * n + 1]);
+    boxes_.resize(leaves_), is_cut_.resize(2 * leaves_);
+    for (std::size_t n = leaves_ - 1; n > 0; --n) boxes_[n] = PointBox::of(box_of(2 * n), box_of(2 * n + 1));
     sums_.assign(static_cast<std::size_t>(channels) * (leaves_ + GaborPoints::most), 0.0F);
   }
 
@@ -100,6 +101,15 @@ class PointTree {
   }
 
  private:
+  PointBox box_of(std::size_t node) const {
+    if (node < leaves_) return boxes_[node];
+    PointBox box;
+    if (node - leaves_ >= order_.size()) return box;
+    const WavePoint& p = points_[order_[node - leaves_]];
+    box.left = box.right = p.x, box.top = box.bottom = p.y;
+    return box;
+  }
+
   /// Of the sums of point i: vectors of points, channel after channel.
   std::size_t place(std::size_t i) const {
     constexpr std::size_t most = GaborPoints::most;
@@ -108,7 +118,7 @@ class PointTree {
 
   /// The least area that the impacts of a node are drawn in, square pixels, with the cells at its rim.
   double plan(std::size_t node, const GaborShape& shape) {
-    const PointBox& box = boxes_[node];
+    const PointBox box = box_of(node);
     is_cut_[node] = 0;
     if (box.is_empty()) return 0;
     const double around_x = 2 * shape.half_width + shape.cell, around_y = 2 * shape.half_height + shape.cell;
@@ -122,7 +132,7 @@ class PointTree {
   }
 
   void add_planned(std::size_t node, const GaborShape& shape, GaborImpacts& drawer) {
-    const PointBox& box = boxes_[node];
+    const PointBox box = box_of(node);
     if (box.is_empty()) return;
     if (is_cut_[node] != 0) {
       add_planned(2 * node, shape, drawer), add_planned(2 * node + 1, shape, drawer);
@@ -149,7 +159,7 @@ class PointTree {
 
   /// Of the node over `count` places from `first` on.
   void add_node(std::size_t node, std::size_t first, std::size_t count, std::size_t level, const GaborShape& shape) {
-    const PointBox& box = boxes_[node];
+    const PointBox box = box_of(node);
     if (box.is_empty()) return;
     const auto pixels = [](std::int64_t at, std::int64_t origin) {
       return static_cast<double>(at - origin * plane_pixel) / plane_pixel;
@@ -198,7 +208,7 @@ class PointTree {
   std::span<const std::uint32_t> order_;
   int channels_;
   std::size_t leaves_ = 1;
-  std::vector<PointBox> boxes_;
+  std::vector<PointBox> boxes_;  // of the nodes that are not points
   std::vector<char> is_cut_;
   std::vector<float> sums_;
   std::int64_t origin_x_ = 0, origin_y_ = 0;  // of what was drawn, pixels
@@ -214,16 +224,15 @@ void sum_gabor(const GaborField& field, Seed seed, std::span<const WavePoint> po
   std::vector<GaborShape> shapes;
   shapes.reserve(field.bands.size());
   for (const GaborBand& band : field.bands) shapes.emplace_back(field, band);
-  std::vector<std::uint32_t> order(points.size());
+  const AlignedBuffer<std::uint32_t> order(points.size());
   parallel_for(static_cast<int>((points.size() + sorted_points - 1) / sorted_points), [&](int block) {
     const std::size_t first = static_cast<std::size_t>(block) * sorted_points;
-    const auto sorted = curve_order(points.subspan(first, std::min(sorted_points, points.size() - first)));
-    for (std::size_t i = 0; i < sorted.size(); ++i) order[first + i] = static_cast<std::uint32_t>(first) + sorted[i];
+    order_by_curve(points.subspan(first, std::min(sorted_points, points.size() - first)),
+                   static_cast<std::uint32_t>(first), order.data() + first);
   });
   parallel_for(static_cast<int>((points.size() + tree_points - 1) / tree_points), [&](int task) {
     const std::size_t first = static_cast<std::size_t>(task) * tree_points;
-    PointTree tree(points, std::span(order).subspan(first, std::min(tree_points, points.size() - first)),
-                   field.channels);
+    PointTree tree(points, {order.data() + first, std::min(tree_points, points.size() - first)}, field.channels);
     for (std::size_t b = 0; b < shapes.size(); ++b) {
       GaborImpacts drawer(field, b, seed);
       tree.add(shapes[b], drawer);
