@@ -14,9 +14,21 @@ using LooseFloats = Lanes::LooseFloats;
 [[gnu::always_inline]] inline Floats fused_lanes(const Floats& a, const Floats& b, const Floats& c) {
   auto sum = c;
   if constexpr (has_fused) {
-    asm("vfmadd231ps %2, %1, %0" : "+v"(sum) : "v"(a), "v"(b));
+    asm("vfmadd231ps %2, %1, %0" : "+v"(sum) : "v"(b), "vm"(a));
   } else {
     for (int x = 0; x < Lanes::count; ++x) sum[x] = __builtin_fmaf(a[x], b[x], c[x]);
+  }
+  return sum;
+}
+
+/// The same where a is used up and c is a coefficient.
+[[gnu::always_inline]] inline Floats fused_series(const Floats& a, const Floats& b, float c) {
+  auto sum = a;
+  const Floats last = c - Floats{};
+  if constexpr (has_fused) {
+    asm("vfmadd213ps %2, %1, %0" : "+v"(sum) : "v"(b), "vm"(last));
+  } else {
+    sum = fused_lanes(a, b, last);
   }
   return sum;
 }
@@ -38,7 +50,7 @@ using LooseFloats = Lanes::LooseFloats;
   const Floats f = e - (shifted - magic);
   Floats series = all_lanes(1.339086331e-3F);
   for (const float k : {9.676031768e-3F, 5.550356954e-2F, 2.402210683e-1F, 6.931471825e-1F, 1.000000119F}) {
-    series = fused_lanes(series, f, all_lanes(k));
+    series = fused_series(series, f, k);
   }
   const Words power = reinterpret_cast<const Words&>(series) + (reinterpret_cast<const Words&>(shifted) << 23U);
   return reinterpret_cast<const Floats&>(power);
@@ -53,10 +65,10 @@ using LooseFloats = Lanes::LooseFloats;
   const Floats x2 = x * x;
   Floats s = all_lanes(2.605107738e-6F), c = all_lanes(-2.629751634e-7F);
   for (const float k : {-1.980901725e-4F, 8.333049715e-3F, -1.666665822e-1F, 1.0F}) {
-    s = fused_lanes(s, x2, all_lanes(k));
+    s = fused_series(s, x2, k);
   }
   for (const float k : {2.477457929e-5F, -1.388865174e-3F, 4.166666046e-2F, -0.5F, 1.0F}) {
-    c = fused_lanes(c, x2, all_lanes(k));
+    c = fused_series(c, x2, k);
   }
   cosine = c;
   sine = x * s;

@@ -18,14 +18,15 @@ struct GaborPoints {
   alignas(64) float part_y[most];
 };
 
-/// Impacts of which some are needed: where they are, in pixels, and their numbers. Room for a whole vector more.
+/// Impacts of which some are needed: where they are, in pixels, and their numbers. With room for one more.
 struct ImpactChoice {
   int count = 0;
   std::vector<float> x, y;
   std::vector<std::uint32_t> number;
+  std::vector<std::int32_t> near;  ///< what choose_impacts needs
 
   void resize(std::size_t size) {
-    x.resize(size + 16), y.resize(size + 16), number.resize(size + 16);
+    if (x.size() <= size) x.resize(size + 1), y.resize(size + 1), number.resize(size + 1);
     count = static_cast<int>(size);
   }
 };

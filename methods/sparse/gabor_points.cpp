@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 #include <vector>
 
@@ -12,9 +13,10 @@
 namespace textonbench {
 namespace {
 
-/// Points that are sorted together, and those of one task: whole levels of a tree.
+/// Points that are sorted together.
 constexpr std::size_t sorted_points = std::size_t{1} << 16;
-constexpr std::size_t tree_points = 2048;
+/// Of one task: more draw fewer impacts twice, fewer leave work for more threads.
+constexpr std::size_t least_tree_points = 256, most_tree_points = 4096, wanted_tasks = 16;
 /// Side of the greatest rectangle whose impacts are drawn at a time, pixels.
 constexpr double widest_draw = 8192;
 
@@ -154,7 +156,11 @@ class PointTree {
     }
     std::size_t first = node, count = 1;
     while (first < leaves_) first *= 2, count *= 2;
-    add_node(node, first - leaves_, count, 0, shape);
+    if (count <= GaborPoints::most) {
+      add_points(first - leaves_, count, all, shape);
+    } else {
+      add_parts(node, first - leaves_, count, 0, shape);
+    }
   }
 
   /// Of the node over `count` places from `first` on.
@@ -174,9 +180,14 @@ class PointTree {
       add_points(first, count, choices_[level + 1], shape);
       return;
     }
-    const std::size_t parts = count >= 4 * GaborPoints::most ? 4 : 2;
+    add_parts(node, first, count, level + 1, shape);
+  }
+
+  /// Of such a node the parts, each with those of the impacts chosen for the node that may reach it.
+  void add_parts(std::size_t node, std::size_t first, std::size_t count, std::size_t level, const GaborShape& shape) {
+    const std::size_t parts = std::min<std::size_t>(16, count / GaborPoints::most);
     for (std::size_t i = 0; i < parts; ++i) {
-      add_node(parts * node + i, first + count / parts * i, count / parts, level + 1, shape);
+      add_node(parts * node + i, first + count / parts * i, count / parts, level, shape);
     }
   }
 
@@ -214,7 +225,7 @@ class PointTree {
   std::int64_t origin_x_ = 0, origin_y_ = 0;  // of what was drawn, pixels
   std::vector<GaborImpact> drawn_;
   std::vector<NearImpact> near_;
-  std::array<ImpactChoice, 8> choices_;  // of all those drawn, and of the nodes down to a vector of points
+  std::array<ImpactChoice, 4> choices_;  // of all those drawn, and of the nodes down to a vector of points
 };
 
 }  // namespace
@@ -230,6 +241,8 @@ void sum_gabor(const GaborField& field, Seed seed, std::span<const WavePoint> po
     order_by_curve(points.subspan(first, std::min(sorted_points, points.size() - first)),
                    static_cast<std::uint32_t>(first), order.data() + first);
   });
+  const std::size_t tree_points =
+      std::clamp(std::bit_floor(points.size() / wanted_tasks), least_tree_points, most_tree_points);
   parallel_for(static_cast<int>((points.size() + tree_points - 1) / tree_points), [&](int task) {
     const std::size_t first = static_cast<std::size_t>(task) * tree_points;
     PointTree tree(points, {order.data() + first, std::min(tree_points, points.size() - first)}, field.channels);
