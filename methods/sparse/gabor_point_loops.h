@@ -9,7 +9,7 @@ template <int width, bool is_skewed>
   const auto y = *reinterpret_cast<const Ints*>(add.points.y + first);
   const auto part_x = *reinterpret_cast<const Floats*>(add.points.part_x + first);
   const auto part_y = *reinterpret_cast<const Floats*>(add.points.part_y + first);
-  const float along = shape.along, shear = shape.shear, across = shape.across, limit = shape.limit, cut = shape.cut;
+  const float along = shape.along, shear = shape.shear, across = shape.across, limit = shape.limit;
   Floats sum[width == 0 ? Image::max_channels : width] = {};
 #pragma GCC unroll 8
   for (int c = 0; c < channels; ++c) sum[c] = load_lanes(add.sums + c * GaborPoints::most + first);
@@ -34,13 +34,13 @@ template <int width, bool is_skewed>
     Floats cosine, sine;
     Words sign;
     half_wave(turn, cosine, sine, sign);
-    Floats window = exp2_of(left_over) * (cut * impact.weight);
+    Floats window = exp2_of(left_over) * impact.weight;
     window = left_over > 0 ? with_sign(window, sign) : Floats{};
     cosine *= window, sine *= window;
 #pragma GCC unroll 8
     for (int c = 0; c < channels; ++c) {
       sum[c] = fused_lanes(all_lanes(color[c].real()), cosine, sum[c]);
-      sum[c] = fused_lanes(all_lanes(-color[c].imag()), sine, sum[c]);
+      sum[c] = fused_lanes(all_lanes(color[c].imag()), sine, sum[c]);
     }
   }
 #pragma GCC unroll 8

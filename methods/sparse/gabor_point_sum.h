@@ -40,7 +40,7 @@ struct PixelBox {
 /// Those of `impacts`, in their order, whose windows may reach into a box.
 void choose_impacts(const GaborShape& shape, const PixelBox& box, const ImpactChoice& impacts, ImpactChoice& chosen);
 
-/// sums[c * most + i] += the chosen kernels at point i.
+/// sums[c * most + i] += the chosen kernels at point i. Weights are those of the impacts times the cut.
 void add_impacts(const GaborShape& shape, const GaborPoints& points, std::span<const NearImpact> impacts,
                  const ImpactChoice& chosen, float* sums);
 

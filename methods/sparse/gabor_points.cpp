@@ -82,7 +82,9 @@ struct PointBox {
 class PointTree {
  public:
   PointTree(std::span<const WavePoint> points, std::span<const std::uint32_t> order, int channels)
-      : points_(points), order_(order), channels_(channels) {
+      : order_(order), outputs_(points.size()), channels_(channels) {
+    points_.reserve(order.size());
+    for (const std::uint32_t i : order) points_.push_back(points[i]);
     while (leaves_ < order.size()) leaves_ *= 2;
     boxes_.resize(leaves_), is_cut_.resize(2 * leaves_);
     for (std::size_t n = leaves_ - 1; n > 0; --n) boxes_[n] = PointBox::of(box_of(2 * n), box_of(2 * n + 1));
@@ -97,7 +99,7 @@ class PointTree {
   void write(std::span<float> out) const {
     for (std::size_t i = 0; i < order_.size(); ++i) {
       for (std::size_t c = 0; c < static_cast<std::size_t>(channels_); ++c) {
-        out[c * points_.size() + order_[i]] = sums_[place(i) + c * GaborPoints::most];
+        out[c * outputs_ + order_[i]] = sums_[place(i) + c * GaborPoints::most];
       }
     }
   }
@@ -107,7 +109,7 @@ class PointTree {
     if (node < leaves_) return boxes_[node];
     PointBox box;
     if (node - leaves_ >= order_.size()) return box;
-    const WavePoint& p = points_[order_[node - leaves_]];
+    const WavePoint& p = points_[node - leaves_];
     box.left = box.right = p.x, box.top = box.bottom = p.y;
     return box;
   }
@@ -149,7 +151,8 @@ class PointTree {
     all.resize(drawn_.size());
     near_.reserve(drawn_.size());
     for (std::size_t i = 0; i < drawn_.size(); ++i) {
-      const NearImpact& impact = near_.emplace_back(near_impact(drawn_[i], origin_x_, origin_y_));
+      NearImpact& impact = near_.emplace_back(near_impact(drawn_[i], origin_x_, origin_y_));
+      impact.weight *= shape.cut;
       all.x[i] = static_cast<float>(impact.x) + impact.part_x;
       all.y[i] = static_cast<float>(impact.y) + impact.part_y;
       all.number[i] = static_cast<std::uint32_t>(i);
@@ -195,7 +198,7 @@ class PointTree {
     GaborPoints some;
     count = std::min(count, order_.size() - first);
     for (std::size_t i = 0; i < GaborPoints::most; ++i) {
-      const WavePoint& p = points_[order_[first + (i < count ? i : 0)]];
+      const WavePoint& p = points_[first + (i < count ? i : 0)];
       some.x[i] = static_cast<std::int32_t>(whole_pixels(p.x) - origin_x_);
       some.y[i] = static_cast<std::int32_t>(whole_pixels(p.y) - origin_y_);
       some.part_x[i] = part_of_pixel(p.x), some.part_y[i] = part_of_pixel(p.y);
@@ -215,8 +218,9 @@ class PointTree {
     }
   }
 
-  std::span<const WavePoint> points_;
   std::span<const std::uint32_t> order_;
+  std::size_t outputs_;  // of a channel
+  std::vector<WavePoint> points_;
   int channels_;
   std::size_t leaves_ = 1;
   std::vector<PointBox> boxes_;  // of the nodes that are not points

@@ -98,8 +98,8 @@ struct AxisWave {
     store_lanes(shape.shear * wave.distance, row + GaborTileRoom::row_stride);
     for (int c = 0; c < shape.channels; ++c) {
       row += 2 * GaborTileRoom::row_stride;
-      store_lanes(color[c].real() * cosine - color[c].imag() * sine, row);
-      store_lanes(-(color[c].real() * sine + color[c].imag() * cosine), row + GaborTileRoom::row_stride);
+      store_lanes(color[c].real() * cosine + color[c].imag() * sine, row);
+      store_lanes(color[c].imag() * cosine - color[c].real() * sine, row + GaborTileRoom::row_stride);
     }
   }
 }
