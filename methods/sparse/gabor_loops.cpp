@@ -23,15 +23,13 @@ struct AddImpacts {
   float* sums;
 };
 
-/// Rows that all kernels are added to before the next ones: few enough for the fastest memory.
-constexpr int strip_height = 16;
 /// Pixels that bounds of kernels are widened by, for what their numbers are rounded.
 constexpr float bound_margin = 0.01F;
 
 /// The arguments of add_to_tile.
 struct AddToTile {
   const GaborShape& shape;
-  std::span<const NearImpact> impacts;  ///< at most GaborTileRoom::kernels of them
+  std::span<const NearImpact> impacts;
   const GaborTileAxis& x;
   const GaborTileAxis& y;
   GaborTileRoom& room;
@@ -104,20 +102,14 @@ void add_impacts(const GaborShape& shape, const GaborPoints& points, std::span<c
 
 void add_to_tile(const GaborShape& shape, std::span<const NearImpact> impacts, const GaborTileAxis& x,
                  const GaborTileAxis& y, GaborTileRoom& room, const GaborTileSums& sums) {
-  for (std::size_t first = 0; first < impacts.size(); first += GaborTileRoom::kernels) {
-    const std::size_t count = std::min<std::size_t>(GaborTileRoom::kernels, impacts.size() - first);
-    const AddToTile add{shape, impacts.subspan(first, count), x, y, room, sums};
-    switch (registers_at_hand()) {
-      case Registers::avx512:
-        gabor_avx512::add_kernels(add);
-        break;
-      case Registers::avx2:
-        gabor_avx2::add_kernels(add);
-        break;
-      case Registers::plain:
-        gabor_plain::add_kernels(add);
-        break;
-    }
+  const AddToTile add{shape, impacts, x, y, room, sums};
+  switch (registers_at_hand()) {
+    case Registers::avx512:
+      return gabor_avx512::add_kernels(add);
+    case Registers::avx2:
+      return gabor_avx2::add_kernels(add);
+    case Registers::plain:
+      return gabor_plain::add_kernels(add);
   }
 }
 

@@ -25,9 +25,6 @@ GaborTileSums::GaborTileSums(int channels)
 }
 
 GaborTileRoom::GaborTileRoom(int channels)
-    : rows_size(std::ptrdiff_t{2 + 2 * channels} * row_stride),
-      columns(std::size_t{kernels} * vectors * column_stride),
-      rows(static_cast<std::size_t>(kernels * rows_size)),
-      kernel(kernels) {}
+    : columns(gabor_tile_width / 16 * column_stride), rows(static_cast<std::size_t>((2 + 2 * channels) * row_stride)) {}
 
 }  // namespace textonbench

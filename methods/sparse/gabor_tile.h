@@ -11,7 +11,7 @@ namespace textonbench {
 
 /// Columns and rows of a tile, whole vectors.
 constexpr int gabor_tile_width = 128;
-constexpr int gabor_tile_height = 64;
+constexpr int gabor_tile_height = 128;
 
 /// Pixels along an axis of a tile, in pixels from some origin. Places behind the last pixel go on as before it.
 struct GaborTileAxis {
@@ -41,34 +41,22 @@ class GaborTileSums {
   AlignedBuffer<float> values_;
 };
 
-/// Room for the columns and rows of some kernels.
+/// Room for the columns and rows of a kernel.
 struct GaborTileRoom {
-  /// Kernels that are made at a time.
-  static constexpr int kernels = 64;
-  static constexpr int vectors = gabor_tile_width / 16;
-
   explicit GaborTileRoom(int channels);
 
-  /// Of a vector of columns: 16 forms or places each, then real parts, then imaginary ones.
-  static constexpr int column_stride = 48;
-  /// Of rows: what is left of the limit, places, and of each channel real and imaginary parts, each as long.
-  static constexpr int row_stride = gabor_tile_height;
-  /// A kernel on the tile.
-  struct Kernel {
-    int first_vector = 0, end_vector = 0, first_row = 0;
-    /// The rows that each vector of the tile's columns may have pixels in.
-    alignas(64) std::int32_t top[16];
-    alignas(64) std::int32_t bottom[16];
-  };
+  /// Of a vector of columns: squares U² or, of skewed kernels, U, of each of 16; then real and imaginary parts.
+  float* column(int vector) const { return columns.data() + std::ptrdiff_t{vector} * column_stride; }
+  static constexpr std::ptrdiff_t column_stride = 48;
+  /// From a number of the rows to their next: what is left of the limit, what their y adds to U, and of each channel
+  /// real and imaginary parts.
+  static constexpr std::ptrdiff_t row_stride = gabor_tile_height;
 
-  float* column(int number, int vector) const {
-    return columns.data() + (std::ptrdiff_t{number} * vectors + vector) * column_stride;
-  }
-  float* row(int number) const { return rows.data() + std::ptrdiff_t{number} * rows_size; }
-
-  std::ptrdiff_t rows_size;
+  int first_vector = 0, end_vector = 0;
+  /// The rows that each vector of the tile's columns may have pixels in.
+  alignas(64) std::int32_t top[16];
+  alignas(64) std::int32_t bottom[16];
   AlignedBuffer<float> columns, rows;
-  AlignedBuffer<Kernel> kernel;
 };
 
 /// sums += the kernels, in their order, at the pixels (x, y).

@@ -18,8 +18,7 @@ struct AxisWave {
 
 /// Rows of all vectors of columns. A kernel's rows above x are those between the roots of (α x + σ y)² + β² y² = limit,
 /// and those of an interval end where it comes next to the ellipse's lowest and highest point.
-[[gnu::always_inline]] inline void find_rows(const AddToTile& add, float middle_x, float middle_y,
-                                             GaborTileRoom::Kernel& kernel) {
+[[gnu::always_inline]] inline void find_rows(const AddToTile& add, float middle_x, float middle_y) {
   using Places = SixteenLanes::Floats;
   using Numbers = SixteenLanes::Ints;
   constexpr Numbers number{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -55,45 +54,44 @@ struct AxisWave {
   const auto last = static_cast<float>(add.y.count);
   top = top > 0 ? top : Places{}, bottom = bottom > 0 ? bottom : Places{};
   top = top < last ? top : last - Places{}, bottom = bottom < last ? bottom : last - Places{};
-  reinterpret_cast<Numbers&>(kernel.top) = __builtin_convertvector(top, Numbers);
-  reinterpret_cast<Numbers&>(kernel.bottom) = __builtin_convertvector(bottom, Numbers);
+  reinterpret_cast<Numbers&>(add.room.top) = __builtin_convertvector(top, Numbers);
+  reinterpret_cast<Numbers&>(add.room.bottom) = __builtin_convertvector(bottom, Numbers);
 }
 
-/// Columns and rows of kernel number i.
-[[gnu::always_inline]] inline void make_kernel(const AddToTile& add, int i) {
+/// Columns and rows of a kernel.
+[[gnu::always_inline]] inline void make_kernel(const AddToTile& add, const NearImpact& impact) {
   const GaborShape& shape = add.shape;
-  const NearImpact& impact = add.impacts[static_cast<std::size_t>(i)];
   const GaborTurns& turns = shape.turns[impact.entry];
-  GaborTileRoom::Kernel& kernel = add.room.kernel.data()[i];
+  GaborTileRoom& room = add.room;
   const float middle_x = static_cast<float>(impact.x) + impact.part_x;
   const float middle_y = static_cast<float>(impact.y) + impact.part_y;
   const auto half_width = static_cast<float>(shape.half_width), half_height = static_cast<float>(shape.half_height);
-  kernel.first_vector = index_before(add.x, middle_x - half_width) / 16;
-  kernel.end_vector = (index_after(add.x, middle_x + half_width) + 15) / 16;
-  kernel.first_row = index_before(add.y, middle_y - half_height) / Lanes::count * Lanes::count;
+  room.first_vector = index_before(add.x, middle_x - half_width) / 16;
+  room.end_vector = (index_after(add.x, middle_x + half_width) + 15) / 16;
+  const int first_row = index_before(add.y, middle_y - half_height) / Lanes::count * Lanes::count;
   const int end_row = index_after(add.y, middle_y + half_height);
-  find_rows(add, middle_x, middle_y, kernel);
+  find_rows(add, middle_x, middle_y);
   const bool is_skewed = shape.shear != 0;
-  for (int vector = kernel.first_vector; vector < kernel.end_vector; ++vector) {
+  for (int vector = room.first_vector; vector < room.end_vector; ++vector) {
     for (int lane = 0; lane < 16; lane += Lanes::count) {
       const AxisWave wave(add.x, 16 * vector + lane, impact.x, impact.part_x, turns.whole_x, turns.part_x, 0);
       const Floats u = shape.along * wave.distance, form = u * u;
       Floats window = exp2_of(-form);
       window = form < shape.limit ? window : Floats{};
-      float* column = add.room.column(i, vector) + lane;
+      float* column = room.column(vector) + lane;
       store_lanes(is_skewed ? u : form, column);
       store_lanes(is_skewed ? wave.cosine : window * wave.cosine, column + 16);
       store_lanes(is_skewed ? wave.sine : window * wave.sine, column + 32);
     }
   }
   const std::complex<float>* color = shape.color(impact.entry);
-  for (int first = kernel.first_row; first < end_row; first += Lanes::count) {
+  for (int first = first_row; first < end_row; first += Lanes::count) {
     const AxisWave wave(add.y, first, impact.y, impact.part_y, turns.whole_y, turns.part_y, impact.phase);
     const Floats v = shape.across * wave.distance, form = v * v, left_over = shape.limit - form;
     Floats window = exp2_of(-form) * impact.weight;
     window = left_over > 0 ? window : Floats{};
     const Floats cosine = window * wave.cosine, sine = window * wave.sine;
-    float* row = add.room.row(i) + first;
+    float* row = room.rows.data() + first;
     store_lanes(left_over, row);
     store_lanes(shape.shear * wave.distance, row + GaborTileRoom::row_stride);
     for (int c = 0; c < shape.channels; ++c) {
@@ -133,40 +131,32 @@ template <int width, bool is_skewed>
 }
 
 template <int width, bool is_skewed>
-[[gnu::always_inline]] inline void add_strip(const AddToTile& add, int strip, int channel) {
-  const std::ptrdiff_t out_stride = add.sums.row_stride();
-  float* sums = add.sums.row(channel, 0);
+[[gnu::always_inline]] inline void add_channels(const AddToTile& add, int channel) {
   const GaborTileRoom& room = add.room;
-  const auto kernels = static_cast<int>(add.impacts.size());
-  for (int i = 0; i < kernels; ++i) {
-    const GaborTileRoom::Kernel& kernel = room.kernel.data()[i];
-    const float* row = room.row(i);
-    const float* colors = row + std::ptrdiff_t{2} * (channel + 1) * GaborTileRoom::row_stride;
-    for (int vector = kernel.first_vector; vector < kernel.end_vector; ++vector) {
-      const int top = std::max(kernel.top[vector], strip),
-                bottom = std::min(kernel.bottom[vector], strip + strip_height);
-      for (int lane = 0; lane < 16; lane += Lanes::count) {
-        add_column<width, is_skewed>(room.column(i, vector) + lane, row, colors, top, bottom, sums + 16 * vector + lane,
-                                     out_stride);
-      }
+  const float* row = room.rows.data();
+  const float* colors = row + std::ptrdiff_t{2} * (channel + 1) * GaborTileRoom::row_stride;
+  for (int vector = room.first_vector; vector < room.end_vector; ++vector) {
+    for (int lane = 0; lane < 16; lane += Lanes::count) {
+      add_column<width, is_skewed>(room.column(vector) + lane, row, colors, room.top[vector], room.bottom[vector],
+                                   add.sums.row(channel, 0) + 16 * vector + lane, add.sums.row_stride());
     }
   }
 }
 
 template <bool is_skewed>
-[[gnu::always_inline]] inline void add_strips(const AddToTile& add) {
-  for (int strip = 0; strip < add.y.count; strip += strip_height) {
+[[gnu::always_inline]] inline void add_kernels_of(const AddToTile& add) {
+  for (const NearImpact& impact : add.impacts) {
+    make_kernel(add, impact);
     int channel = 0;
-    for (; channel + 3 <= add.shape.channels; channel += 3) add_strip<3, is_skewed>(add, strip, channel);
-    for (; channel < add.shape.channels; ++channel) add_strip<1, is_skewed>(add, strip, channel);
+    for (; channel + 3 <= add.shape.channels; channel += 3) add_channels<3, is_skewed>(add, channel);
+    for (; channel < add.shape.channels; ++channel) add_channels<1, is_skewed>(add, channel);
   }
 }
 
 void add_kernels(const AddToTile& add) {
-  for (int i = 0; i < static_cast<int>(add.impacts.size()); ++i) make_kernel(add, i);
   if (add.shape.shear == 0) {
-    add_strips<false>(add);
+    add_kernels_of<false>(add);
   } else {
-    add_strips<true>(add);
+    add_kernels_of<true>(add);
   }
 }
