@@ -9,27 +9,31 @@ using Ints = Lanes::Ints;
 using Words = Lanes::Words;
 using LooseFloats = Lanes::LooseFloats;
 
-/// a b + c, rounded once. The instruction by its name: GCC finds it in loops over the numbers of a vector in some
-/// places and not in others.
+/// a b + c, rounded once. By the instruction's name: GCC finds it in loops over the numbers of a vector in some places
+/// and not in others. Analyzers that are not GCC read the loops.
 [[gnu::always_inline]] inline Floats fused_lanes(const Floats& a, const Floats& b, const Floats& c) {
   auto sum = c;
+#ifndef __clang__
   if constexpr (has_fused) {
     asm("vfmadd231ps %2, %1, %0" : "+v"(sum) : "v"(b), "vm"(a));
-  } else {
-    for (int x = 0; x < Lanes::count; ++x) sum[x] = __builtin_fmaf(a[x], b[x], c[x]);
+    return sum;
   }
+#endif
+  for (int x = 0; x < Lanes::count; ++x) sum[x] = __builtin_fmaf(a[x], b[x], c[x]);
   return sum;
 }
 
 /// The same where a is used up and c is a coefficient.
 [[gnu::always_inline]] inline Floats fused_series(const Floats& a, const Floats& b, float c) {
   auto sum = a;
-  const Floats last = c - Floats{};
+#ifndef __clang__
   if constexpr (has_fused) {
+    const Floats last = c - Floats{};
     asm("vfmadd213ps %2, %1, %0" : "+v"(sum) : "v"(b), "vm"(last));
-  } else {
-    sum = fused_lanes(a, b, last);
+    return sum;
   }
+#endif
+  for (int x = 0; x < Lanes::count; ++x) sum[x] = __builtin_fmaf(a[x], b[x], c);
   return sum;
 }
 

@@ -48,31 +48,39 @@ std::int32_t index_after(const GaborTileAxis& axis, float high) {
 
 // Vectors are taken apart in functions whose processor has no such registers, before they are inlined into others: all
 // of the loops are compiled for theirs.
+#ifndef __clang__
 #pragma GCC push_options
 #pragma GCC target("avx512f,avx512vl,avx512dq")
+#endif
 namespace gabor_avx512 {
 using Lanes = SixteenLanes;
-constexpr bool has_fused = true;
+[[maybe_unused]] constexpr bool has_fused = true;
 #include "methods/sparse/gabor_lanes.h"
 #include "methods/sparse/gabor_point_loops.h"
 #include "methods/sparse/gabor_tile_loops.h"
 }  // namespace gabor_avx512
+#ifndef __clang__
 #pragma GCC pop_options
+#endif
 
+#ifndef __clang__
 #pragma GCC push_options
 #pragma GCC target("avx2,fma")
+#endif
 namespace gabor_avx2 {
 using Lanes = EightLanes;
-constexpr bool has_fused = true;
+[[maybe_unused]] constexpr bool has_fused = true;
 #include "methods/sparse/gabor_lanes.h"
 #include "methods/sparse/gabor_point_loops.h"
 #include "methods/sparse/gabor_tile_loops.h"
 }  // namespace gabor_avx2
+#ifndef __clang__
 #pragma GCC pop_options
+#endif
 
 namespace gabor_plain {
 using Lanes = EightLanes;
-constexpr bool has_fused = false;
+[[maybe_unused]] constexpr bool has_fused = false;
 #include "methods/sparse/gabor_lanes.h"
 #include "methods/sparse/gabor_point_loops.h"
 #include "methods/sparse/gabor_tile_loops.h"

@@ -12,7 +12,7 @@ template <int width, bool is_skewed>
   const float along = shape.along, shear = shape.shear, across = shape.across, limit = shape.limit;
   Floats sum[width == 0 ? Image::max_channels : width] = {};
 #pragma GCC unroll 8
-  for (int c = 0; c < channels; ++c) sum[c] = load_lanes(add.sums + c * GaborPoints::most + first);
+  for (int c = 0; c < channels; ++c) sum[c] = load_lanes(add.sums + std::ptrdiff_t{c} * GaborPoints::most + first);
   const std::uint32_t* number = add.chosen.number.data();
   const NearImpact* impacts = add.impacts.data();
   const GaborTurns* all_turns = shape.turns.data();
@@ -44,7 +44,7 @@ template <int width, bool is_skewed>
     }
   }
 #pragma GCC unroll 8
-  for (int c = 0; c < channels; ++c) store_lanes(sum[c], add.sums + c * GaborPoints::most + first);
+  for (int c = 0; c < channels; ++c) store_lanes(sum[c], add.sums + std::ptrdiff_t{c} * GaborPoints::most + first);
 }
 
 template <int width>

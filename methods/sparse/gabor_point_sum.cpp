@@ -17,7 +17,6 @@ __attribute__((target_clones("default", "avx2", "avx512f"))) void find_near(cons
   const float half_v = shape.across * (box.half_height + margin);
   const float along = shape.along, shear = shape.shear, across = shape.across, limit = shape.limit * 1.00001F;
   const float middle_x = box.x, middle_y = box.y;
-#pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     const float dx = x[i] - middle_x, dy = y[i] - middle_y;
     const float u = std::max(std::abs(along * dx + shear * dy) - half_u, 0.0F);

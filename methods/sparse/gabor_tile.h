@@ -52,11 +52,11 @@ struct GaborTileRoom {
   /// real and imaginary parts.
   static constexpr std::ptrdiff_t row_stride = gabor_tile_height;
 
-  int first_vector = 0, end_vector = 0;
   /// The rows that each vector of the tile's columns may have pixels in.
   alignas(64) std::int32_t top[16];
   alignas(64) std::int32_t bottom[16];
   AlignedBuffer<float> columns, rows;
+  int first_vector = 0, end_vector = 0;
 };
 
 /// sums += the kernels, in their order, at the pixels (x, y).

@@ -123,8 +123,8 @@ template <int width, bool is_skewed>
 #pragma GCC unroll 8
     for (int c = 0; c < width; ++c, to += GaborTileSums::channel_stride) {
       Floats sum = load_lanes(to);
-      sum = fused_lanes(all_lanes(colors[y + 2 * c * stride]), real, sum);
-      sum = fused_lanes(all_lanes(colors[y + (2 * c + 1) * stride]), imaginary, sum);
+      sum = fused_lanes(all_lanes(colors[y + std::ptrdiff_t{2} * c * stride]), real, sum);
+      sum = fused_lanes(all_lanes(colors[y + (std::ptrdiff_t{2} * c + 1) * stride]), imaginary, sum);
       store_lanes(sum, to);
     }
   }
@@ -134,11 +134,12 @@ template <int width, bool is_skewed>
 [[gnu::always_inline]] inline void add_channels(const AddToTile& add, int channel) {
   const GaborTileRoom& room = add.room;
   const float* row = room.rows.data();
-  const float* colors = row + std::ptrdiff_t{2} * (channel + 1) * GaborTileRoom::row_stride;
+  const float* colors = row + (std::ptrdiff_t{2} * channel + 2) * GaborTileRoom::row_stride;
   for (int vector = room.first_vector; vector < room.end_vector; ++vector) {
     for (int lane = 0; lane < 16; lane += Lanes::count) {
       add_column<width, is_skewed>(room.column(vector) + lane, row, colors, room.top[vector], room.bottom[vector],
-                                   add.sums.row(channel, 0) + 16 * vector + lane, add.sums.row_stride());
+                                   add.sums.row(channel, 0) + std::ptrdiff_t{16} * vector + lane,
+                                   add.sums.row_stride());
     }
   }
 }
