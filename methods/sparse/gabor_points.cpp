@@ -20,6 +20,11 @@ constexpr std::size_t least_tree_points = 256, most_tree_points = 4096, wanted_t
 /// Side of the greatest rectangle whose impacts are drawn at a time, pixels.
 constexpr double widest_draw = 8192;
 
+/// From the lower to the higher of two coordinates, which may be more than a signed number holds.
+std::uint64_t plane_distance(std::int64_t low, std::int64_t high) {
+  return static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low);
+}
+
 /// Bits of two 8-bit numbers by turns, the first 16 bits below the second.
 std::uint32_t spread_bits(std::uint32_t v) {
   v = (v | v << 4U) & 0x0F0F0F0FU;
@@ -35,15 +40,15 @@ void order_by_curve(std::span<const WavePoint> points, std::uint32_t first, std:
     low = {std::min(low.x, p.x), std::min(low.y, p.y)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y)};
   }
-  const auto widest = static_cast<std::uint64_t>(std::max(high.x - low.x, high.y - low.y));
+  const auto widest = std::max(plane_distance(low.x, high.x), plane_distance(low.y, high.y));
   unsigned shift = 0;
   while (widest >> shift >= 256) ++shift;
   // Two passes of a sort by counting, by halves of the key, which is above the number.
   AlignedBuffer<std::uint64_t> keys(points.size()), half(points.size());
   std::array<std::array<std::uint32_t, 257>, 2> next{};
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto x = static_cast<std::uint64_t>(points[i].x - low.x) >> shift;
-    const auto y = static_cast<std::uint64_t>(points[i].y - low.y) >> shift;
+    const auto x = plane_distance(low.x, points[i].x) >> shift;
+    const auto y = plane_distance(low.y, points[i].y) >> shift;
     const std::uint32_t key = spread_bits(static_cast<std::uint32_t>(x | y << 16U));
     keys.data()[i] = std::uint64_t{key} << 32U | i;
     ++next[0][(key & 255U) + 1], ++next[1][(key >> 8U) + 1];
@@ -67,8 +72,8 @@ struct PointBox {
   std::int64_t right = std::numeric_limits<std::int64_t>::min(), bottom = right;
 
   bool is_empty() const { return left > right; }
-  double width() const { return static_cast<double>(right - left) / plane_pixel; }
-  double height() const { return static_cast<double>(bottom - top) / plane_pixel; }
+  double width() const { return static_cast<double>(plane_distance(left, right)) / plane_pixel; }
+  double height() const { return static_cast<double>(plane_distance(top, bottom)) / plane_pixel; }
   static PointBox of(const PointBox& a, const PointBox& b) {
     PointBox both;
     both.left = std::min(a.left, b.left), both.top = std::min(a.top, b.top);

@@ -113,11 +113,13 @@ TEST(AddGabor, RasterHasTheValuesOfThePoints) {
 TEST(SumGabor, PointsDoNotDependOnEachOther) {
   const GaborField field = test_field(3);
   std::vector<WavePoint> points;
-  points.reserve(330);
+  points.reserve(332);
   for (std::int64_t i = 0; i < 300; ++i)
     points.push_back({i * 7919 % 40 * plane_pixel / 3, i * 104729 % 50 * plane_pixel / 7});
   for (std::int64_t i = 0; i < 30; ++i)
     points.push_back({(i - 15) * (plane_pixel << 34), (i * i - 99) * (plane_pixel << 27)});
+  points.push_back({plane_pixel << 40, -plane_pixel << 40});
+  points.push_back({-plane_pixel << 40, plane_pixel << 40});
   std::vector<float> together(3 * points.size()), alone(3);
   sum_gabor(field, Seed{8}, points, together);
   for (std::size_t i = 0; i < points.size(); ++i) {
