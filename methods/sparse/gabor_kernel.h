@@ -1,66 +1,73 @@
-// Gabor kernels at many places at a time, for gabor_sum.cpp.
+// Gabor kernels in single precision.
 //
-// A kernel is a product of its parts along x and y: with s = xy / xx and t = dx + s dy its window is
-// exp(−π xx t²) exp(−π h dy²), h = det / xx, and its wave exp(2πi f_x dx) exp(2πi (f_y dy + u)). Numbers of a place do
-// not depend on its neighbors in a call: all routes give the same bits.
+// The logarithm of a window is a sum of two squares, −log2 g(y) = U² + V² with U = α y_1 + σ y_2 and V = β y_2 (α² =
+// π xx / ln 2 and so on), and a place is inside where U² < limit − V². All routes find U, V and limit − V² by the same
+// operations, so that all cut a kernel at the same places, bit for bit.
+//
+// Distances are exact: whole pixels as integers, and what is left of a pixel, in which a float is exact, by itself. So
+// are turns, of 2^−32: a frequency's turns of a whole pixel are integers, that wrap around.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
+#include <complex>
 #include <cstdint>
 #include <vector>
 
 #include "methods/sparse/gabor_field.h"
+#include "methods/sparse/wave_points.h"
 
 namespace textonbench {
 
-/// A band's window and frequencies, as the places need them.
+/// A frequency along both axes: 2^−32 turn a whole pixel, and 2^−29 turn a part of one.
+struct GaborTurns {
+  std::uint32_t whole_x = 0, whole_y = 0;
+  float part_x = 0, part_y = 0;
+};
+
+/// A band as kernels need it.
 struct GaborShape {
-  explicit GaborShape(const GaborBand& band);
+  GaborShape(const GaborField& field, const GaborBand& band);
 
-  float along = 0;                        ///< xx
-  float across = 0;                       ///< h
-  float limit = 0;                        ///< of the form
-  double shear = 0;                       ///< s
-  std::int64_t reach_x = 0, reach_y = 0;  ///< of the box around the window, 2^−22 pixel, rounded up
-  std::vector<std::int32_t> frequency;    ///< x and y of each entry, 2^−30 turn a pixel
+  /// Colors of an entry, by channel.
+  const std::complex<float>* color(std::uint32_t entry) const {
+    return colors + std::size_t{entry} * static_cast<std::size_t>(channels);
+  }
+
+  int channels = 1;
+  float along = 0, shear = 0, across = 0;       ///< α, σ, β
+  float limit = 0;                              ///< −log2 of the cut
+  float cut = 0;                                ///< the cut
+  double half_width = 0, half_height = 0;       ///< of the box around the window, pixels
+  std::int64_t reach_x = 0, reach_y = 0;        ///< the same, 2^−22 pixel, rounded up
+  double cell = 0;                              ///< about the side of a cell of impacts, pixels
+  const std::complex<float>* colors = nullptr;  ///< of the band, which must outlive this
+  std::vector<GaborTurns> turns;                ///< of each entry
 };
 
-/// Numbers of many places, in blocks of sixteen.
-class KernelPlaces {
- public:
-  static constexpr int block = 16;
-
-  /// Makes room for so many.
-  void resize(int count);
-  int count() const { return count_; }
-  /// Their distances from a kernel's middle, 2^−20 pixel.
-  std::int32_t* distance() { return distance_.data(); }
-  const float* real() const { return real_.data(); }
-  const float* imaginary() const { return imaginary_.data(); }
-  const float* form() const { return form_.data(); }
-
-  /// Waves of a frequency and phase at the distances.
-  void set_waves(std::int32_t frequency, std::uint32_t phase);
-  /// Forms c t² at distances t, and the waves times exp(−π c t²), of the places [first, end) alone.
-  void set_windows(float coefficient, const std::int32_t* distance, int first, int end);
-
- private:
-  int count_ = 0;
-  std::vector<std::int32_t> distance_;
-  std::vector<std::uint32_t> turns_;
-  std::vector<float> cosine_, sine_, real_, imaginary_, form_;
+/// An impact at whole pixels from some origin and parts of a pixel in [0, 1).
+struct NearImpact {
+  std::int32_t x = 0, y = 0;
+  float part_x = 0, part_y = 0;
+  float weight = 0;
+  std::uint32_t phase = 0;
+  std::uint32_t entry = 0;
 };
 
-/// A coordinate in 2^−22 pixel as what places are made of, in 2^−20: distances below 2^11 pixels fit 32 bits.
-inline std::int64_t place_coordinate(std::int64_t at) { return at >> 2; }
-inline std::int32_t place_distance(std::int64_t to, std::int64_t from) {
-  return static_cast<std::int32_t>(place_coordinate(to) - place_coordinate(from));
+/// Of a coordinate in 2^−22 pixel: its whole pixels, rounded down, and what is left, in pixels.
+inline std::int64_t whole_pixels(std::int64_t at) { return at >> plane_bits; }
+inline float part_of_pixel(std::int64_t at) {
+  return static_cast<float>(at & (plane_pixel - 1)) * (1.0F / static_cast<float>(plane_pixel));
 }
 
-/// s dy of a distance dy, where it is below 2^10 pixels.
-inline std::int32_t sheared(double shear, std::int32_t distance) {
-  return static_cast<std::int32_t>(std::floor(std::min(std::max(shear * distance, -0x1p30), 0x1p30) + 0.5));
+/// `origin_x` and `origin_y` in pixels, at most 2^30 from the impact.
+inline NearImpact near_impact(const GaborImpact& impact, std::int64_t origin_x, std::int64_t origin_y) {
+  return {static_cast<std::int32_t>(whole_pixels(impact.x) - origin_x),
+          static_cast<std::int32_t>(whole_pixels(impact.y) - origin_y),
+          part_of_pixel(impact.x),
+          part_of_pixel(impact.y),
+          impact.weight,
+          impact.phase,
+          impact.entry};
 }
 
 }  // namespace textonbench

@@ -1,213 +1,266 @@
 #include <algorithm>
-#include <cmath>
-#include <numeric>
+#include <array>
+#include <bit>
+#include <limits>
 #include <vector>
 
+#include "methods/base/aligned_buffer.h"
+#include "methods/base/image.h"
 #include "methods/base/parallel.h"
-#include "methods/sparse/gabor_kernel.h"
+#include "methods/sparse/gabor_point_sum.h"
 #include "methods/sparse/gabor_sum.h"
 
 namespace textonbench {
 namespace {
 
-/// Points of a call that are grouped together.
-constexpr std::size_t points_at_once = std::size_t{1} << 20;
-/// Points that a square of the plane is to hold, so that its impacts are drawn once for all of them.
-constexpr double points_a_square = 48;
+/// Points that are sorted together.
+constexpr std::size_t sorted_points = std::size_t{1} << 16;
+/// Of one task: more draw fewer impacts twice, fewer leave work for more threads.
+constexpr std::size_t least_tree_points = 256, most_tree_points = 4096, wanted_tasks = 16;
+/// Side of the greatest rectangle whose impacts are drawn at a time, pixels.
+constexpr double widest_draw = 8192;
 
-/// Some points, in the order of squares of the plane, and where each square's begin.
-struct PointSquares {
-  std::vector<std::uint32_t> order;
-  std::vector<std::size_t> first;  ///< and the end
-};
-
-/// Row and column of a square.
-using SquareKey = std::pair<std::uint64_t, std::uint64_t>;
-
-/// a − b of coordinates in order, which may be as far apart as 2^63.
-std::uint64_t span_between(std::int64_t a, std::int64_t b) {
-  return static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b);
+/// From the lower to the higher of two coordinates, which may be more than a signed number holds.
+std::uint64_t plane_distance(std::int64_t low, std::int64_t high) {
+  return static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low);
 }
 
-std::vector<std::uint32_t> sorted_order(const std::vector<SquareKey>& keys) {
-  std::vector<std::uint32_t> order(keys.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return keys[i]; });
-  return order;
+/// Bits of two 8-bit numbers by turns, the first 16 bits below the second.
+std::uint32_t spread_bits(std::uint32_t v) {
+  v = (v | v << 4U) & 0x0F0F0F0FU;
+  v = (v | v << 2U) & 0x33333333U;
+  v = (v | v << 1U) & 0x55555555U;
+  return (v | v >> 15U) & 0xFFFFU;
 }
 
-/// The same where squares are few, in as many steps as there are of them and of points.
-std::vector<std::uint32_t> counted_order(const std::vector<SquareKey>& keys, std::uint64_t across, std::uint64_t down) {
-  const auto place = [&](const SquareKey& key) { return key.first * across + key.second; };
-  std::vector<std::uint32_t> next(across * down + 1), order(keys.size());
-  for (const SquareKey& key : keys) ++next[place(key) + 1];
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  for (std::uint32_t i = 0; i < keys.size(); ++i) order[next[place(keys[i])]++] = i;
-  return order;
-}
-
-/// Squares of at least a quarter of the kernels' box and at most the whole, by the density of the points.
-PointSquares squares_of(std::span<const WavePoint> points, const GaborShape& shape) {
+/// Numbers of the points, from `first` on, along Morton's curve through 256 x 256 squares around all of them.
+void order_by_curve(std::span<const WavePoint> points, std::uint32_t first, std::uint32_t* order) {
   WavePoint low = points.front(), high = low;
   for (const WavePoint& p : points) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y)};
   }
-  const double area =
-      (static_cast<double>(span_between(high.x, low.x)) + 1) * (static_cast<double>(span_between(high.y, low.y)) + 1);
-  const std::int64_t reach = std::max(shape.reach_x, shape.reach_y);
-  const double wanted = std::sqrt(area * points_a_square / static_cast<double>(points.size()));
-  const auto side =
-      static_cast<std::uint64_t>(std::clamp(wanted, static_cast<double>(reach) / 2, 2 * static_cast<double>(reach)));
-  const std::uint64_t across = span_between(high.x, low.x) / side + 1, down = span_between(high.y, low.y) / side + 1;
-  std::vector<SquareKey> square;
-  square.reserve(points.size());
-  for (const WavePoint& p : points)
-    square.emplace_back(span_between(p.y, low.y) / side, span_between(p.x, low.x) / side);
-  PointSquares squares;
-  const bool are_few =
-      static_cast<double>(across) * static_cast<double>(down) <= 8.0 * static_cast<double>(points.size());
-  squares.order = are_few ? counted_order(square, across, down) : sorted_order(square);
+  const auto widest = std::max(plane_distance(low.x, high.x), plane_distance(low.y, high.y));
+  unsigned shift = 0;
+  while (widest >> shift >= 256) ++shift;
+  // Two passes of a sort by counting, by halves of the key, which is above the number.
+  AlignedBuffer<std::uint64_t> keys(points.size()), half(points.size());
+  std::array<std::array<std::uint32_t, 257>, 2> next{};
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (i == 0 || square[squares.order[i]] != square[squares.order[i - 1]]) squares.first.push_back(i);
+    const auto x = plane_distance(low.x, points[i].x) >> shift;
+    const auto y = plane_distance(low.y, points[i].y) >> shift;
+    const std::uint32_t key = spread_bits(static_cast<std::uint32_t>(x | y << 16U));
+    keys.data()[i] = std::uint64_t{key} << 32U | i;
+    ++next[0][(key & 255U) + 1], ++next[1][(key >> 8U) + 1];
   }
-  squares.first.push_back(points.size());
-  return squares;
-}
-
-/// Distances of places from a kernel's middle, and those along x of a sheared window; whether any is in its box.
-__attribute__((target_clones("default", "avx2", "avx512f"))) bool set_distances(
-    const std::int32_t* x, const std::int32_t* y, std::int32_t middle_x, std::int32_t middle_y, std::int32_t reach_x,
-    std::int32_t reach_y, double shear, int count, std::int32_t* column, std::int32_t* row, std::int32_t* shifted) {
-  int inside = 0;
-  if (shear != 0) {
-    for (int i = 0; i < count; ++i) {
-      // Of places far outside the window the sum may leave 32 bits, and they are cut for their distance along y.
-      shifted[i] = static_cast<std::int32_t>(static_cast<std::uint32_t>(x[i] - middle_x) +
-                                             static_cast<std::uint32_t>(sheared(shear, y[i] - middle_y)));
-    }
+  for (std::size_t pass = 0; pass < 2; ++pass) {
+    for (std::size_t i = 1; i < next[pass].size(); ++i) next[pass][i] += next[pass][i - 1];
   }
-  for (int i = 0; i < count; ++i) {
-    const std::int32_t dx = x[i] - middle_x, dy = y[i] - middle_y;
-    inside |= static_cast<int>(dx < reach_x) & static_cast<int>(-dx < reach_x) & static_cast<int>(dy < reach_y) &
-              static_cast<int>(-dy < reach_y);
-    column[i] = dx, row[i] = dy;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint64_t key = keys.data()[i];
+    half.data()[next[0][key >> 32U & 255U]++] = key;
   }
-  return inside != 0;
-}
-
-/// Part of a kernel at places where its form is below the limit.
-__attribute__((target_clones("default", "avx2", "avx512f"))) void add_at_places(
-    float limit, const std::complex<float>& color, float weight, const KernelPlaces& columns, const KernelPlaces& rows,
-    float* __restrict out) {
-  const float *column_form = columns.form(), *row_form = rows.form(), *column_real = columns.real(),
-              *column_imaginary = columns.imaginary(), *row_real = rows.real(), *row_imaginary = rows.imaginary();
-  const float color_real = color.real(), color_imaginary = color.imag();
-  const int count = columns.count();
-  for (int i = 0; i < count; ++i) {
-    const float real = weight * (color_real * row_real[i] - color_imaginary * row_imaginary[i]);
-    const float imaginary = weight * (color_real * row_imaginary[i] + color_imaginary * row_real[i]);
-    const float value = real * column_real[i] - imaginary * column_imaginary[i];
-    out[i] += column_form[i] < limit - row_form[i] ? value : 0.0F;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint64_t key = half.data()[i];
+    order[next[1][key >> 40U]++] = first + static_cast<std::uint32_t>(key);
   }
 }
 
-/// Kernels of a band at the points of a square.
-class KernelPoints {
+/// A rectangle around points, 2^−22 pixel; none of them where it is inside out.
+struct PointBox {
+  std::int64_t left = std::numeric_limits<std::int64_t>::max(), top = left;
+  std::int64_t right = std::numeric_limits<std::int64_t>::min(), bottom = right;
+
+  bool is_empty() const { return left > right; }
+  double width() const { return static_cast<double>(plane_distance(left, right)) / plane_pixel; }
+  double height() const { return static_cast<double>(plane_distance(top, bottom)) / plane_pixel; }
+  static PointBox of(const PointBox& a, const PointBox& b) {
+    PointBox both;
+    both.left = std::min(a.left, b.left), both.top = std::min(a.top, b.top);
+    both.right = std::max(a.right, b.right), both.bottom = std::max(a.bottom, b.bottom);
+    return both;
+  }
+};
+
+/// A binary tree over points in their order: node n has the children 2n and 2n + 1, and the points are the last level.
+/// Impacts are drawn for nodes whose rectangle costs less than its halves do.
+class PointTree {
  public:
-  KernelPoints(const GaborField& field, const GaborBand& band, const GaborShape& shape)
-      : channels_(field.channels), band_(band), shape_(shape) {}
-
-  /// Starts sums of zero at the points of that order.
-  void start(std::span<const WavePoint> points, std::span<const std::uint32_t> order) {
-    count_ = static_cast<int>(order.size());
-    base_ = points[order.front()];
-    low_ = high_ = base_;
-    x_.clear(), y_.clear();
-    for (const std::uint32_t i : order) {
-      const WavePoint& p = points[i];
-      low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
-      high_ = {std::max(high_.x, p.x), std::max(high_.y, p.y)};
-      x_.push_back(place_distance(p.x, base_.x)), y_.push_back(place_distance(p.y, base_.y));
-    }
-    const auto room =
-        static_cast<std::size_t>((count_ + KernelPlaces::block - 1) / KernelPlaces::block) * KernelPlaces::block;
-    stride_ = room;
-    sums_.assign(room * static_cast<std::size_t>(channels_), 0.0F);
-    shifted_.resize(room);
-  }
-  PlaneRectangle box() const {
-    return {low_.x - shape_.reach_x, low_.y - shape_.reach_y, high_.x + shape_.reach_x + 1,
-            high_.y + shape_.reach_y + 1};
+  PointTree(std::span<const WavePoint> points, std::span<const std::uint32_t> order, int channels)
+      : order_(order), outputs_(points.size()), channels_(channels) {
+    points_.reserve(order.size());
+    for (const std::uint32_t i : order) points_.push_back(points[i]);
+    while (leaves_ < order.size()) leaves_ *= 2;
+    boxes_.resize(leaves_), is_cut_.resize(2 * leaves_);
+    for (std::size_t n = leaves_ - 1; n > 0; --n) boxes_[n] = PointBox::of(box_of(2 * n), box_of(2 * n + 1));
+    sums_.assign(static_cast<std::size_t>(channels) * (leaves_ + GaborPoints::most), 0.0F);
   }
 
-  void add(const GaborImpact& impact) {
-    rows_.resize(count_), columns_.resize(count_);
-    std::int32_t *along = columns_.distance(), *across = rows_.distance();
-    const auto reach_x = static_cast<std::int32_t>(place_coordinate(shape_.reach_x)) + 2;
-    const auto reach_y = static_cast<std::int32_t>(place_coordinate(shape_.reach_y)) + 2;
-    if (!set_distances(x_.data(), y_.data(), place_distance(impact.x, base_.x), place_distance(impact.y, base_.y),
-                       reach_x, reach_y, shape_.shear, count_, along, across, shifted_.data())) {
-      return;
-    }
-    if (shape_.shear != 0) along = shifted_.data();
-    const std::int32_t* frequency = shape_.frequency.data() + std::size_t{2} * impact.entry;
-    rows_.set_waves(frequency[1], impact.phase);
-    rows_.set_windows(shape_.across, rows_.distance(), 0, count_);
-    columns_.set_waves(frequency[0], 0);
-    columns_.set_windows(shape_.along, along, 0, count_);
-    for (int c = 0; c < channels_; ++c) {
-      const auto channel = static_cast<std::size_t>(c);
-      const std::size_t entry = std::size_t{impact.entry} * static_cast<std::size_t>(channels_);
-      add_at_places(shape_.limit, band_.color[entry + channel], impact.weight, columns_, rows_,
-                    sums_.data() + channel * stride_);
-    }
+  void add(const GaborShape& shape, GaborImpacts& drawer) {
+    plan(1, shape);
+    add_planned(1, shape, drawer);
   }
 
-  /// out[c * total + order[i]] += the sum at point i.
-  void finish(std::span<const std::uint32_t> order, std::size_t total, std::span<float> out) const {
-    for (std::size_t c = 0; c < static_cast<std::size_t>(channels_); ++c) {
-      for (std::size_t i = 0; i < order.size(); ++i) out[c * total + order[i]] += sums_[c * stride_ + i];
+  void write(std::span<float> out) const {
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+      for (std::size_t c = 0; c < static_cast<std::size_t>(channels_); ++c) {
+        out[c * outputs_ + order_[i]] = sums_[place(i) + c * GaborPoints::most];
+      }
     }
   }
 
  private:
+  PointBox box_of(std::size_t node) const {
+    if (node < leaves_) return boxes_[node];
+    PointBox box;
+    if (node - leaves_ >= order_.size()) return box;
+    const WavePoint& p = points_[node - leaves_];
+    box.left = box.right = p.x, box.top = box.bottom = p.y;
+    return box;
+  }
+
+  /// Of the sums of point i: vectors of points, channel after channel.
+  std::size_t place(std::size_t i) const {
+    constexpr std::size_t most = GaborPoints::most;
+    return i / most * most * static_cast<std::size_t>(channels_) + i % most;
+  }
+
+  /// The least area that the impacts of a node are drawn in, square pixels, with the cells at its rim.
+  double plan(std::size_t node, const GaborShape& shape) {
+    const PointBox box = box_of(node);
+    is_cut_[node] = 0;
+    if (box.is_empty()) return 0;
+    const double around_x = 2 * shape.half_width + shape.cell, around_y = 2 * shape.half_height + shape.cell;
+    const double width = box.width(), height = box.height(), whole = (width + around_x) * (height + around_y);
+    const bool is_too_wide = std::max(width, height) > widest_draw;
+    if (node >= leaves_ || (!is_too_wide && whole <= 1.5 * around_x * around_y)) return whole;
+    const double halves = plan(2 * node, shape) + plan(2 * node + 1, shape);
+    if (!is_too_wide && whole <= halves) return whole;
+    is_cut_[node] = 1;
+    return halves;
+  }
+
+  void add_planned(std::size_t node, const GaborShape& shape, GaborImpacts& drawer) {
+    const PointBox box = box_of(node);
+    if (box.is_empty()) return;
+    if (is_cut_[node] != 0) {
+      add_planned(2 * node, shape, drawer), add_planned(2 * node + 1, shape, drawer);
+      return;
+    }
+    origin_x_ = whole_pixels(box.left), origin_y_ = whole_pixels(box.top);
+    drawn_.clear(), near_.clear();
+    drawer.draw({box.left - shape.reach_x, box.top - shape.reach_y, box.right + shape.reach_x + 1,
+                 box.bottom + shape.reach_y + 1},
+                drawn_);
+    ImpactChoice& all = choices_[0];
+    all.resize(drawn_.size());
+    near_.reserve(drawn_.size());
+    for (std::size_t i = 0; i < drawn_.size(); ++i) {
+      NearImpact& impact = near_.emplace_back(near_impact(drawn_[i], origin_x_, origin_y_));
+      impact.weight *= shape.cut;
+      all.x[i] = static_cast<float>(impact.x) + impact.part_x;
+      all.y[i] = static_cast<float>(impact.y) + impact.part_y;
+      all.number[i] = static_cast<std::uint32_t>(i);
+    }
+    std::size_t first = node, count = 1;
+    while (first < leaves_) first *= 2, count *= 2;
+    if (count <= GaborPoints::most) {
+      add_points(first - leaves_, count, all, shape);
+    } else {
+      add_parts(node, first - leaves_, count, 0, shape);
+    }
+  }
+
+  /// Of the node over `count` places from `first` on.
+  void add_node(std::size_t node, std::size_t first, std::size_t count, std::size_t level, const GaborShape& shape) {
+    const PointBox box = box_of(node);
+    if (box.is_empty()) return;
+    const auto pixels = [](std::int64_t at, std::int64_t origin) {
+      return static_cast<double>(at - origin * plane_pixel) / plane_pixel;
+    };
+    const PixelBox reached{.x = static_cast<float>(pixels(box.left, origin_x_) + box.width() / 2),
+                           .y = static_cast<float>(pixels(box.top, origin_y_) + box.height() / 2),
+                           .half_width = static_cast<float>(box.width() / 2),
+                           .half_height = static_cast<float>(box.height() / 2)};
+    choose_impacts(shape, reached, choices_[level], choices_[level + 1]);
+    if (choices_[level + 1].count == 0) return;
+    if (count <= GaborPoints::most) {
+      add_points(first, count, choices_[level + 1], shape);
+      return;
+    }
+    add_parts(node, first, count, level + 1, shape);
+  }
+
+  /// Of such a node the parts, each with those of the impacts chosen for the node that may reach it.
+  void add_parts(std::size_t node, std::size_t first, std::size_t count, std::size_t level, const GaborShape& shape) {
+    const std::size_t parts = std::min<std::size_t>(16, count / GaborPoints::most);
+    for (std::size_t i = 0; i < parts; ++i) {
+      add_node(parts * node + i, first + count / parts * i, count / parts, level, shape);
+    }
+  }
+
+  void add_points(std::size_t first, std::size_t count, const ImpactChoice& chosen, const GaborShape& shape) {
+    GaborPoints some;
+    count = std::min(count, order_.size() - first);
+    for (std::size_t i = 0; i < GaborPoints::most; ++i) {
+      const WavePoint& p = points_[first + (i < count ? i : 0)];
+      some.x[i] = static_cast<std::int32_t>(whole_pixels(p.x) - origin_x_);
+      some.y[i] = static_cast<std::int32_t>(whole_pixels(p.y) - origin_y_);
+      some.part_x[i] = part_of_pixel(p.x), some.part_y[i] = part_of_pixel(p.y);
+    }
+    if (first % GaborPoints::most == 0 && count == GaborPoints::most) {
+      add_impacts(shape, some, near_, chosen, sums_.data() + place(first));
+      return;
+    }
+    alignas(64) float sums[Image::max_channels * GaborPoints::most] = {};
+    const std::size_t numbers = static_cast<std::size_t>(channels_) * GaborPoints::most;
+    for (std::size_t at = 0; at < numbers; at += GaborPoints::most) {
+      std::copy_n(sums_.data() + place(first) + at, count, sums + at);
+    }
+    add_impacts(shape, some, near_, chosen, sums);
+    for (std::size_t at = 0; at < numbers; at += GaborPoints::most) {
+      std::copy_n(sums + at, count, sums_.data() + place(first) + at);
+    }
+  }
+
+  std::span<const std::uint32_t> order_;
+  std::size_t outputs_;  // of a channel
+  std::vector<WavePoint> points_;
   int channels_;
-  const GaborBand& band_;
-  const GaborShape& shape_;
-  int count_ = 0;
-  std::size_t stride_ = 0;
-  WavePoint base_, low_, high_;
-  std::vector<std::int32_t> x_, y_;  ///< from the base, 2^−20 pixel
-  std::vector<std::int32_t> shifted_;
+  std::size_t leaves_ = 1;
+  std::vector<PointBox> boxes_;  // of the nodes that are not points
+  std::vector<char> is_cut_;
   std::vector<float> sums_;
-  KernelPlaces rows_, columns_;
+  std::int64_t origin_x_ = 0, origin_y_ = 0;  // of what was drawn, pixels
+  std::vector<GaborImpact> drawn_;
+  std::vector<NearImpact> near_;
+  std::array<ImpactChoice, 4> choices_;  // of all those drawn, and of the nodes down to a vector of points
 };
 
 }  // namespace
 
 void sum_gabor(const GaborField& field, Seed seed, std::span<const WavePoint> points, std::span<float> out) {
-  std::ranges::fill(out, 0.0F);
-  std::vector<GaborShape> shapes(field.bands.begin(), field.bands.end());
-  const std::size_t total = points.size();
-  for (std::size_t first = 0; first < total; first += points_at_once) {
-    const std::size_t count = std::min(points_at_once, total - first);
-    const std::span<const WavePoint> some = points.subspan(first, count);
-    for (std::size_t b = 0; b < field.bands.size(); ++b) {
-      const PointSquares squares = squares_of(some, shapes[b]);
-      parallel_for(static_cast<int>(squares.first.size()) - 1, [&](int s) {
-        const std::size_t from = squares.first[static_cast<std::size_t>(s)];
-        const std::span<const std::uint32_t> order(squares.order.data() + from,
-                                                   squares.first[static_cast<std::size_t>(s) + 1] - from);
-        KernelPoints kernel(field, field.bands[b], shapes[b]);
-        kernel.start(some, order);
-        std::vector<GaborImpact> impacts;
-        GaborImpacts(field, b, seed).draw(kernel.box(), impacts);
-        for (const GaborImpact& impact : impacts) kernel.add(impact);
-        kernel.finish(order, total, out.subspan(first));
-      });
+  if (points.empty()) return;
+  std::vector<GaborShape> shapes;
+  shapes.reserve(field.bands.size());
+  for (const GaborBand& band : field.bands) shapes.emplace_back(field, band);
+  const AlignedBuffer<std::uint32_t> order(points.size());
+  parallel_for(static_cast<int>((points.size() + sorted_points - 1) / sorted_points), [&](int block) {
+    const std::size_t first = static_cast<std::size_t>(block) * sorted_points;
+    order_by_curve(points.subspan(first, std::min(sorted_points, points.size() - first)),
+                   static_cast<std::uint32_t>(first), order.data() + first);
+  });
+  const std::size_t tree_points =
+      std::clamp(std::bit_floor(points.size() / wanted_tasks), least_tree_points, most_tree_points);
+  parallel_for(static_cast<int>((points.size() + tree_points - 1) / tree_points), [&](int task) {
+    const std::size_t first = static_cast<std::size_t>(task) * tree_points;
+    PointTree tree(points, {order.data() + first, std::min(tree_points, points.size() - first)}, field.channels);
+    for (std::size_t b = 0; b < shapes.size(); ++b) {
+      GaborImpacts drawer(field, b, seed);
+      tree.add(shapes[b], drawer);
     }
-  }
+    tree.write(out);
+  });
 }
 
 }  // namespace textonbench
