@@ -66,7 +66,7 @@ std::optional<std::string> refuse_by_example(const Problem& problem, const Param
         "cut makes them smaller",
         windows.empty() ? 0 : windows.front().half_width());
   }
-  return std::nullopt;
+  return refuse_footprint(windows.front(), params.number("footprint"));
 }
 
 std::span<const ParamSpec> by_example_params() {

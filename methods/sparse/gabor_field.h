@@ -32,6 +32,12 @@ enum class GaborPhase { random, cosine, sine };
 /// impacts: those of the impacts, ±1 or 1. uniform: times a uniform number in (−1, 1), as in the paper.
 enum class GaborWeight { impacts, uniform };
 
+/// Place of a pair of channels d <= c among all pairs.
+inline std::size_t color_pair_of(int c, int d) {
+  const auto one = static_cast<std::size_t>(c), other = static_cast<std::size_t>(d);
+  return one * (one + 1) / 2 + other;
+}
+
 struct GaborFrequency {
   double x = 0;  ///< cycles a pixel, in [−1, 1]
   double y = 0;

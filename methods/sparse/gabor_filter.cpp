@@ -36,7 +36,7 @@ void filter_band(const Eigen::Matrix2d& covariance, int channels, GaborBand& ban
   window.xx = filtered(0, 0), window.xy = filtered(0, 1), window.yy = filtered(1, 1);
   if (!(std::max(window.half_width(), window.half_height()) <= widest_filtered_kernel)) {
     throw std::invalid_argument(
-        fmt::format("gabor with kernels that a filter widens to a box of {} x {} pixels around "
+        fmt::format("gabor with kernels that a filter widens to a box of {:.0f} x {:.0f} pixels around "
                     "their middle: expected at most {}",
                     window.half_width(), window.half_height(), widest_filtered_kernel));
   }

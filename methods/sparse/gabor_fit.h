@@ -68,7 +68,7 @@ struct FitFieldOptions {
 };
 
 /// Impacts are shared among bands by the roots of their variances. A kernel is drawn with the probability of its part
-/// of the band's variance, each eigenvector of its part with its own, all with one amplitude.
+/// of the band's variance, in one of a few colors of one norm whose mean product is its part, all with one amplitude.
 GaborField fitted_field(const GaborFit& fit, int channels, const FitFieldOptions& options);
 
 }  // namespace textonbench

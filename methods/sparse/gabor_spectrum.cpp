@@ -10,15 +10,11 @@
 namespace textonbench {
 namespace {
 
-std::size_t color_pair(int c, int d) {
-  return static_cast<std::size_t>(c) * (static_cast<std::size_t>(c) + 1) / 2 + static_cast<std::size_t>(d);
-}
-
 int wrapped(int i, int n) { return (i % n + n) % n; }
 
 /// Σ_e p_e κ_e / ρ(0) c_c c_d of a band for d <= c, κ with the sign of the phase.
 std::vector<double> phase_imbalance(const GaborField& field, const GaborBand& band) {
-  std::vector<double> pairs(color_pair(field.channels, 0));
+  std::vector<double> pairs(color_pair_of(field.channels, 0));
   if (field.phase == GaborPhase::random) return pairs;
   const double sign = field.phase == GaborPhase::cosine ? 1 : -1, energy = band.window.energy();
   const std::vector<double> chance = band.chances();
@@ -27,7 +23,7 @@ std::vector<double> phase_imbalance(const GaborField& field, const GaborBand& ba
     const std::complex<float>* color = band.color.data() + e * static_cast<std::size_t>(field.channels);
     for (int c = 0; c < field.channels; ++c) {
       for (int d = 0; d <= c; ++d) {
-        pairs[color_pair(c, d)] += weight * (std::complex<double>(color[c]) * std::complex<double>(color[d])).real();
+        pairs[color_pair_of(c, d)] += weight * (std::complex<double>(color[c]) * std::complex<double>(color[d])).real();
       }
     }
   }
@@ -46,7 +42,7 @@ class WavesByEntry {
       const std::complex<float>* color = band_.color.data() + e * static_cast<std::size_t>(channels_);
       for (int c = 0; c < channels_; ++c) {
         for (int d = 0; d <= c; ++d) {
-          pairs[color_pair(c, d)] +=
+          pairs[color_pair_of(c, d)] +=
               (std::complex<double>(color[c]) * std::conj(std::complex<double>(color[d])) * wave).real();
         }
       }
@@ -169,7 +165,7 @@ Eigen::MatrixXd gabor_covariance(const GaborField& field) {
     WavesByEntry(field.channels, band).add(0, 0, 1, pairs);
     const double scale = 0.5 * band.intensity * field.weight_power() * band.window.energy();
     for (int c = 0; c < field.channels; ++c) {
-      for (int d = 0; d <= c; ++d) covariance(c, d) += scale * pairs[color_pair(c, d)];
+      for (int d = 0; d <= c; ++d) covariance(c, d) += scale * pairs[color_pair_of(c, d)];
     }
   }
   return covariance.selfadjointView<Eigen::Lower>();
@@ -177,7 +173,7 @@ Eigen::MatrixXd gabor_covariance(const GaborField& field) {
 
 CrossSpectrum gabor_spectrum(const GaborField& field, Extent grid) {
   std::vector<Image> covariance;
-  for (std::size_t pair = 0; pair < color_pair(field.channels, 0); ++pair) covariance.emplace_back(grid, 1);
+  for (std::size_t pair = 0; pair < color_pair_of(field.channels, 0); ++pair) covariance.emplace_back(grid, 1);
   for (const GaborBand& band : field.bands) {
     if (band.raster.width > 0) {
       add_band(field, band, WavesByTransform(field.channels, band), covariance);

@@ -9,6 +9,7 @@
 #include "methods/base/gaussian_model.h"
 #include "methods/base/spectrum.h"
 #include "methods/base/welch.h"
+#include "methods/sparse/gabor_field.h"
 
 namespace textonbench {
 namespace {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <vector>
 
 #include "methods/base/exemplar.h"
@@ -10,12 +9,6 @@
 #include "methods/base/image.h"
 
 namespace textonbench {
-
-/// Place of a pair of channels d <= c.
-inline std::size_t color_pair_of(int c, int d) {
-  const auto one = static_cast<std::size_t>(c), other = static_cast<std::size_t>(d);
-  return one * (one + 1) / 2 + other;
-}
 
 /// Frequencies are the bins of a raster; sums over its whole plane are covariances of colors.
 struct GaborTarget {
