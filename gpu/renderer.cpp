@@ -18,20 +18,23 @@ constexpr double furthest_from_base = 0x1p20;
 constexpr int group_side = 16;  // of compute.glsl
 /// Mesa's software ends all loops of an invocation after 65535 turns in all, without a word. There are up to four
 /// impacts to a useful fetch.
-constexpr double most_software_fetches = 65535.0 / 4;
+constexpr double most_software_turns = 65535;
+constexpr double turns_a_fetch = 4;
 
 constexpr std::string_view vertex_text =
     "void main() {  // one triangle over the frame\n"
     "  gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);\n"
     "}\n";
 
-std::vector<ShaderStage> stages_of(const ContextInfo& info, const ShaderRecipe& recipe, ShaderPath path) {
+std::vector<ShaderStage> stages_of(const ContextInfo& info, const ShaderRecipe& recipe, ShaderPath path,
+                                   const SurfaceScene* scene) {
   const std::string_view version = info.compute() ? "430 core" : "410 core";
+  const auto defines = surface_defines(recipe, scene);
   if (path == ShaderPath::compute) {
-    return {{GL_COMPUTE_SHADER, shader_source(version, "compute.glsl", recipe)}};
+    return {{GL_COMPUTE_SHADER, shader_source(version, "compute.glsl", recipe, defines)}};
   }
   const ShaderSource vertex{fmt::format("#version {}\n#line 1 0\n{}", version, vertex_text), {"the triangle"}};
-  return {{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, shader_source(version, "fragment.glsl", recipe)}};
+  return {{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, shader_source(version, "fragment.glsl", recipe, defines)}};
 }
 
 /// A coordinate relative to the base in 2^−10 pixel, and 32 bits below.
@@ -52,19 +55,32 @@ void require_reach(const Eigen::Vector2d& corner) {
 }  // namespace
 
 struct Renderer::Resources {
-  Resources(Context& context, const ShaderRecipe& recipe, ShaderPath path)
-      : program(context, stages_of(context.info(), recipe, path)), frame(context, (recipe.channels + 3) / 4) {}
+  Resources(Context& context, const ShaderRecipe& recipe, ShaderPath path, const SurfaceScene* scene)
+      : program(context, stages_of(context.info(), recipe, path, scene)), frame(context, (recipe.channels + 3) / 4) {
+    if (scene != nullptr) surface.emplace(context, recipe, *scene);
+  }
+
+  /// The recipe's textures stay bound to the units in their order.
+  void set_recipe(const ShaderRecipe& recipe, Program& shader) const {
+    shader.use();
+    std::int32_t unit = 0;
+    for (const ShaderTexture& texture : recipe.textures) shader.set(texture.sampler, unit++);
+    for (const ShaderWords& words : recipe.words) shader.set(words.sampler, unit++);
+    for (const auto& [name, value] : recipe.uniforms) shader.set(name, value);
+  }
 
   Program program;
+  std::optional<Surface> surface;
   std::vector<Texture> textures;
   FrameTarget frame;
 };
 
-Renderer::Renderer(Context& context, const ShaderRecipe& recipe, ShaderPath path)
+Renderer::Renderer(Context& context, const ShaderRecipe& recipe, ShaderPath path,
+                   const std::optional<SurfaceScene>& asked)
     : context_(context),
       path_(path),
       channels_(recipe.channels),
-      fetches_(recipe.useful_fetches),
+      turns_(std::max(recipe.turns, turns_a_fetch * recipe.useful_fetches)),
       base_(recipe.base),
       shader_(recipe.shader) {
   if (recipe.channels < 1 || recipe.channels > 8) {
@@ -75,21 +91,19 @@ Renderer::Renderer(Context& context, const ShaderRecipe& recipe, ShaderPath path
                                context.info().renderer, context.info().major, context.info().minor));
   }
   context.make_current();
-  resources_ = std::make_unique<Resources>(context, recipe, path);
+  std::optional<SurfaceScene> scene = asked;
+  if (recipe.mesh != nullptr) {
+    if (!scene) scene.emplace();
+    scene->mesh = recipe.mesh;
+    view_ = SurfaceView{.tilt = recipe.tilt};
+  }
+  resources_ = std::make_unique<Resources>(context, recipe, path, scene ? &*scene : nullptr);
   context.check("compiling the shader of " + recipe.shader);
+  for (const ShaderTexture& texture : recipe.textures) resources_->textures.emplace_back(context, texture);
+  for (const ShaderWords& words : recipe.words) resources_->textures.emplace_back(context, words);
+  if (resources_->surface) resources_->set_recipe(recipe, resources_->surface->program());
   Program& program = resources_->program;
-  program.use();
-  for (const ShaderTexture& texture : recipe.textures) {
-    program.set(texture.sampler, static_cast<std::int32_t>(resources_->textures.size()));
-    resources_->textures.emplace_back(context, texture);
-  }
-  for (const ShaderWords& words : recipe.words) {
-    program.set(words.sampler, static_cast<std::int32_t>(resources_->textures.size()));
-    resources_->textures.emplace_back(context, words);
-  }
-  for (const auto& [name, value] : recipe.uniforms) {
-    program.set(name, value);
-  }
+  resources_->set_recipe(recipe, program);
   if (path == ShaderPath::compute) {
     program.set("channels_0", std::int32_t{0});
     program.set("channels_1", std::int32_t{1});
@@ -105,7 +119,9 @@ Renderer::~Renderer() {
   }
 }
 
-void Renderer::prepare(const Frame& frame) {
+Frame Renderer::prepare(const Frame& asked) {
+  Frame frame = asked;
+  if (!frame.surface) frame.surface = view_;
   if (frame.size.width < 1 || frame.size.height < 1 || frame.supersampling < 1 || frame.supersampling > 64) {
     throw std::invalid_argument(
         fmt::format("frame of {}x{} pixels of {} x {} samples: expected at least one pixel and "
@@ -115,18 +131,24 @@ void Renderer::prepare(const Frame& frame) {
   if (!(std::isfinite(frame.step) && frame.step > 0 && frame.step < furthest_from_base)) {
     throw std::invalid_argument(fmt::format("frame of step {}: expected a finite one above 0", frame.step));
   }
-  if (context_.info().software && fetches_ * frame.supersampling > most_software_fetches) {
-    throw GpuError(
-        fmt::format("{} fetches a row of samples, {} in a row: {} ends loops that long before they are done; take "
-                    "fewer impacts, or "
-                    "the processor",
-                    fetches_ * frame.supersampling, frame.supersampling, context_.info().renderer));
+  const int samples_a_pass = frame.surface ? 1 : frame.supersampling;
+  if (context_.info().software && turns_ * samples_a_pass > most_software_turns) {
+    throw GpuError(fmt::format(
+        "{} turns of loops for {} samples of a pixel in a pass: {} ends loops after {}; take fewer impacts, or the "
+        "processor",
+        turns_ * samples_a_pass, samples_a_pass, context_.info().renderer, most_software_turns));
+  }
+  if (frame.surface.has_value() != resources_->surface.has_value()) {
+    throw std::invalid_argument(frame.surface ? "frame of a surface by a renderer without a scene"
+                                              : "frame of the plane by a renderer of a surface");
   }
   context_.make_current();
   resources_->frame.resize(frame.size);
   const int n = frame.supersampling;
   Eigen::Vector2d first = frame.origin - base_;
-  if (!frame.ground) {
+  if (frame.surface) {
+    require_reach(first);
+  } else if (!frame.ground) {
     const Eigen::Vector2d size(frame.size.width, frame.size.height);
     require_reach(first);
     require_reach(first + frame.step * size);
@@ -162,39 +184,62 @@ void Renderer::prepare(const Frame& frame) {
                                              static_cast<float>(std::cos(ground.pitch))});
   program.set("furthest", static_cast<float>(ground.furthest));
   program.set("sample_row", std::int32_t{0});
-  program.require_all_set(shader_);
   for (std::size_t unit = 0; unit < resources_->textures.size(); ++unit) {
     resources_->textures[unit].bind(static_cast<GLuint>(unit));
   }
+  if (frame.surface) {
+    Surface& surface = *resources_->surface;
+    const std::vector<std::pair<std::string, ShaderValue>> origin{
+        {"origin_coarse", std::array<std::int32_t, 2>{x, y}},
+        {"origin_fraction", std::array<std::uint32_t, 2>{x_fraction, y_fraction}}};
+    surface.prepare(frame.size, *frame.surface, frame.step, origin);
+    program.use();
+    surface.bind(program, static_cast<int>(resources_->textures.size()));
+    Surface::set_view(program, *frame.surface);
+  }
+  program.require_all_set(shader_);
   resources_->frame.bind(path_ == ShaderPath::compute);
+  return frame;
 }
 
 void Renderer::submit(const Frame& frame) {
-  const GlFunctions& gl = context_.gl();
-  const auto groups = [](int pixels) { return static_cast<GLuint>((pixels + group_side - 1) / group_side); };
-  for (int row = 0; row < frame.supersampling; ++row) {
-    resources_->program.set("sample_row", std::int32_t{row});
-    if (path_ == ShaderPath::compute) {
-      gl.DispatchCompute(groups(frame.size.width), groups(frame.size.height), 1);
-      gl.MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    } else {
-      row == 0 ? gl.Disable(GL_BLEND) : gl.Enable(GL_BLEND);
-      gl.BlendFunc(GL_ONE, GL_ONE);
-      gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  const int n = frame.supersampling;
+  for (int pass = 0; pass < (frame.surface ? n * n : n); ++pass) {
+    if (frame.surface) {
+      // In whole samples from the middle one.
+      const Eigen::Vector2d sample(pass % n - (n - 1) / 2.0, pass / n - (n - 1) / 2.0);
+      resources_->surface->draw(sample / n);
+      resources_->program.use();
+      resources_->frame.bind(path_ == ShaderPath::compute);
     }
+    submit_pass(frame, pass);
   }
 }
 
-Image Renderer::draw(const Frame& frame) {
-  prepare(frame);
+void Renderer::submit_pass(const Frame& frame, int pass) {
+  const GlFunctions& gl = context_.gl();
+  const auto groups = [](int pixels) { return static_cast<GLuint>((pixels + group_side - 1) / group_side); };
+  resources_->program.set("sample_row", std::int32_t{pass});
+  if (path_ == ShaderPath::compute) {
+    gl.DispatchCompute(groups(frame.size.width), groups(frame.size.height), 1);
+    gl.MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  } else {
+    pass == 0 ? gl.Disable(GL_BLEND) : gl.Enable(GL_BLEND);
+    gl.BlendFunc(GL_ONE, GL_ONE);
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  }
+}
+
+Image Renderer::draw(const Frame& asked) {
+  const Frame frame = prepare(asked);
   submit(frame);
   Image image = resources_->frame.read(channels_);
   context_.check(fmt::format("drawing a frame of {}x{} pixels", frame.size.width, frame.size.height));
   return image;
 }
 
-std::vector<double> Renderer::time(const Frame& frame, int warm_up, int count) {
-  prepare(frame);
+std::vector<double> Renderer::time(const Frame& asked, int warm_up, int count) {
+  const Frame frame = prepare(asked);
   const GlFunctions& gl = context_.gl();
   for (int i = 0; i < warm_up; ++i) {
     submit(frame);

@@ -74,11 +74,14 @@ std::string ShaderSource::readable(std::string_view log) const {
   return result;
 }
 
-ShaderSource shader_source(std::string_view version, std::string_view main_file, const ShaderRecipe& recipe) {
+ShaderSource shader_source(std::string_view version, std::string_view main_file, const ShaderRecipe& recipe,
+                           const std::vector<std::pair<std::string, std::string>>& defines) {
   Assembly assembly(recipe.shader + ".glsl");
   assembly.source.text = fmt::format("#version {}\n#define CHANNELS {}\n", version, recipe.channels);
-  for (const auto& [name, value] : recipe.defines) {
-    assembly.source.text += fmt::format("#define {} {}\n", name, value);
+  for (const auto* all : {&recipe.defines, &defines}) {
+    for (const auto& [name, value] : *all) {
+      assembly.source.text += fmt::format("#define {} {}\n", name, value);
+    }
   }
   assembly.append(std::string(main_file), fmt::format("the recipe of {}", recipe.shader));
   return std::move(assembly.source);

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "methods/base/shader_recipe.h"
@@ -23,9 +24,10 @@ struct ShaderSource {
   std::string readable(std::string_view log) const;
 };
 
-/// `main_file` ("fragment.glsl") for a recipe: the version, CHANNELS and the recipe's defines, then the file with its
-/// lines `#include "NAME"` replaced by those files, each once, and `#include RECIPE` by the recipe's. Throws
-/// std::invalid_argument for a file that does not exist, naming the one that includes it.
-ShaderSource shader_source(std::string_view version, std::string_view main_file, const ShaderRecipe& recipe);
+/// `main_file` ("fragment.glsl") for a recipe: the version, CHANNELS, the recipe's defines and further ones, then the
+/// file with its lines `#include "NAME"` replaced by those files, each once, and `#include RECIPE` by the recipe's.
+/// Throws std::invalid_argument for a file that does not exist, naming the one that includes it.
+ShaderSource shader_source(std::string_view version, std::string_view main_file, const ShaderRecipe& recipe,
+                           const std::vector<std::pair<std::string, std::string>>& defines = {});
 
 }  // namespace textonbench

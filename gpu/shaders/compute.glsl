@@ -1,9 +1,16 @@
-// A work group of 16 x 16 pixels, whose threads call texture_at() together, for a row of their samples.
+// A work group of 16 x 16 pixels, whose threads call texture_at() together, for the samples of a pass.
 #define COMPUTE
+#include "plane.glsl"
+#include "space.glsl"
+#ifdef SURFACE
+#include "surface_frame.glsl"
+#else
 #include "frame.glsl"
+#endif
 
 layout(local_size_x = 16, local_size_y = 16) in;
 #include RECIPE
+#include "sample.glsl"
 
 layout(rgba32f, binding = 0) uniform image2D channels_0;
 #if CHANNELS > 4
@@ -15,7 +22,7 @@ shared ivec2 tile_high;
 
 // All points of the group that are covered; low above high when there is none.
 PlaneBox box_of_group(View view, ivec2 sample_index) {
-  if (!is_ground) {
+  if (is_raster()) {
     ivec2 first = ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy);
     ivec2 last = min(first + ivec2(gl_WorkGroupSize.xy), frame_size) - 1;
     return PlaneBox(view_of(first, sample_index).point.coarse, view_of(last, sample_index).point.coarse);
@@ -41,19 +48,20 @@ void main() {
   bool is_inside = all(lessThan(pixel, frame_size));
   pixel = min(pixel, frame_size - 1);
   float sums[8] = float[8](0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-  for (int i = 0; i < supersampling; ++i) {
+  for (int i = 0; i < samples_a_pass(); ++i) {
     View view = view_of(pixel, ivec2(i, sample_row));
     PlaneBox box = box_of_group(view, ivec2(i, sample_row));
-    if (any(greaterThan(box.low, box.high))) {
-      continue;  // no pixel of the group shows the plane
+    if (any(greaterThan(box.low, box.high))) {  // no pixel of the group shows the texture
+      for (int c = 0; c < CHANNELS; ++c) sums[c] += background;
+      continue;
     }
     if (!view.covered) {
       view.point = PlanePoint(box.low, ivec2(0));
       view.footprint = mat2(0.0);
     }
     float values[CHANNELS];
-    texture_at(view.point, view.footprint, box, values);
-    for (int c = 0; c < CHANNELS; ++c) sums[c] += view.covered ? values[c] : 0.0;
+    sample_at(view, box, values);
+    for (int c = 0; c < CHANNELS; ++c) sums[c] += view.covered ? values[c] : background;
   }
   float share = 1.0 / float(supersampling * supersampling);
   if (is_inside) {

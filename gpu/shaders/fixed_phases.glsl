@@ -63,12 +63,6 @@ float turbulent(PlanePoint point, uint axis) {
   return turbulence_scale * (sum - turbulence_mean);
 }
 
-PlanePoint displaced(PlanePoint point, vec2 pixels) {
-  vec2 coarse = floor(pixels * 1024.0);
-  ivec2 fine = point.fine + ivec2(floor((pixels * 1024.0 - coarse) * 4096.0));
-  return PlanePoint(point.coarse + ivec2(coarse) + (fine >> 12), fine & 4095);
-}
-
 // Part of the neighbor at a place in a block of random placement, in its sides, and which side it is on.
 float blend(float at, out int neighbor) {
   float near = min(at, 1.0 - at);
@@ -78,7 +72,7 @@ float blend(float at, out int neighbor) {
 }
 
 void add_structure(PlanePoint point, inout float values[CHANNELS]) {
-  if (TURBULENT > 0) point = displaced(point, vec2(turbulent(point, 0u), turbulent(point, 1u)));
+  if (TURBULENT > 0) point = moved(point, vec2(turbulent(point, 0u), turbulent(point, 1u)));
   uvec2 place = uvec2(point.coarse) * 4096u + uvec2(point.fine) + uvec2(structure_base) * 4194304u;
   if (placement == 0) {
     add_place(place, 1.0, values);

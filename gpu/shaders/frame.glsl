@@ -1,6 +1,4 @@
-// What the pixels of a frame show.
-#include "plane.glsl"
-
+// What the pixels of a frame show of the plane.
 uniform ivec2 frame_size;
 uniform int supersampling;  // n: n x n samples a pixel
 uniform int sample_row;     // those of this pass
@@ -24,6 +22,11 @@ struct View {
   mat2 footprint;
 };
 
+const float background = 0.0;
+
+bool is_raster() { return !is_ground; }
+int samples_a_pass() { return supersampling; }
+
 ivec2 raster_coordinate(int i, int coarse, uint fraction) {
   uint carry, product_high, product_low;
   umulExtended(uint(i), step_fraction, product_high, product_low);
@@ -45,11 +48,8 @@ View ground_view(vec2 pixel, float side) {
   float scale = camera.x / seen;
   vec2 right = vec2(scale, 0.0);
   vec2 down = scale / seen * vec2(-offset.x * camera.w, camera.y);
-  vec2 position = scale * vec2(offset.x, offset.y * camera.z - camera.y * camera.w) * 1024.0;
-  vec2 whole = floor(position);
-  // The fractions of both terms carry into the whole.
-  ivec2 fine = ivec2(origin_fraction >> 20) + ivec2((position - whole) * 4096.0);
-  PlanePoint point = PlanePoint(origin_coarse + ivec2(whole) + (fine >> 12), fine & 4095);
+  vec2 position = scale * vec2(offset.x, offset.y * camera.z - camera.y * camera.w);
+  PlanePoint point = moved(PlanePoint(origin_coarse, ivec2(origin_fraction >> 20)), position);
   bool covered = depth >= 1.0 && length(right) <= furthest && length(down) <= furthest;
   return View(covered, point, mat2(right * side, down * side));
 }

@@ -18,6 +18,15 @@ vec2 plane_difference(PlanePoint a, PlanePoint b) {
   return vec2(a.coarse - b.coarse) * 0.0009765625 + vec2(a.fine - b.fine) * (1.0 / 4194304.0);
 }
 
+// The point so many pixels from another one, fewer than 2^21.
+PlanePoint moved(PlanePoint from, vec2 pixels) {
+  vec2 units = pixels * 1024.0;
+  vec2 whole = floor(units);
+  // The fractions of both carry into the whole.
+  ivec2 fine = from.fine + ivec2((units - whole) * 4096.0);
+  return PlanePoint(from.coarse + ivec2(whole) + (fine >> 12), fine & 4095);
+}
+
 int floor_division(int a, int b) {
   int quotient = a / b;
   return quotient - int(a - quotient * b < 0);

@@ -3,6 +3,7 @@
 #include "plane.glsl"
 #include "recipe_grid.glsl"
 #include "spline_kernel.glsl"
+#include "spline_gradient.glsl"
 
 uniform float start[CHANNELS];
 
@@ -32,3 +33,28 @@ void texture_at(PlanePoint point, mat2 footprint, PlaneBox tile, out float value
   add_impacts(point, footprint, tile, sums);
   for (int c = 0; c < CHANNELS; ++c) values[c] = start[c] + sums[c / 4][c % 4];
 }
+
+#if GRADIENTS
+// Impact by impact, in compute shaders too.
+void gradient_at(PlanePoint point, mat2 footprint, PlaneBox tile, out float values[CHANNELS],
+                 out vec2 gradients[CHANNELS]) {
+  vec4 sums[GROUPS], sums_x[GROUPS], sums_y[GROUPS];
+  for (int g = 0; g < GROUPS; ++g) sums[g] = sums_x[g] = sums_y[g] = vec4(0.0);
+  ImpactGrid grid = recipe_grid();
+  CellRange range = cells_of(grid, reaching(PlaneBox(point.coarse, point.coarse), ivec2(0)));
+  for (int y = range.low.y; y <= range.high.y; ++y) {
+    for (int x = range.low.x; x <= range.high.x; ++x) {
+      ivec2 cell = ivec2(x, y);
+      CellWords open = open_cell(grid, cell);
+      uint count = impact_count(grid, open);
+      for (uint i = 0u; i < count; ++i) {
+        add_sloped_impact(point, impact_on_plane(grid, cell, next_impact(grid, open, i)), sums, sums_x, sums_y);
+      }
+    }
+  }
+  for (int c = 0; c < CHANNELS; ++c) {
+    values[c] = start[c] + sums[c / 4][c % 4];
+    gradients[c] = vec2(sums_x[c / 4][c % 4], sums_y[c / 4][c % 4]);
+  }
+}
+#endif

@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -22,6 +21,7 @@ using Eigen::Vector3d;
 struct OpenMesh {
   TriangleMesh mesh;
   std::vector<bool> has_normal;
+  bool has_coordinates = true;
 };
 
 Vector3d vector_at(const std::vector<tinyobj::real_t>& numbers, int index, std::string_view what,
@@ -40,11 +40,11 @@ Vector3d vector_at(const std::vector<tinyobj::real_t>& numbers, int index, std::
   return vector;
 }
 
-/// Corners that share position and normal become one vertex.
+/// Corners that share position, normal and coordinates become one vertex.
 class MeshBuilder {
  public:
   MeshBuilder(const tinyobj::attrib_t& attributes, std::filesystem::path file)
-      : attributes_(attributes), file_(std::move(file)) {}
+      : attributes_(attributes), file_(std::move(file)), latest_(attributes.vertices.size() / 3, -1) {}
 
   void add(const std::array<tinyobj::index_t, 3>& corners) {
     std::array<std::int32_t, 3> triangle{};
@@ -64,26 +64,55 @@ class MeshBuilder {
 
  private:
   std::int32_t vertex(const tinyobj::index_t& corner) {
-    const auto found = known_.find({corner.vertex_index, corner.normal_index});
-    if (found != known_.end()) {
-      return found->second;
+    const Vector3d position = vector_at(attributes_.vertices, corner.vertex_index, "vertex", file_);
+    // The vertices made of one position are a list, from the latest on.
+    std::int32_t& latest = latest_[static_cast<std::size_t>(corner.vertex_index)];
+    for (std::int32_t known = latest; known >= 0; known = made_[static_cast<std::size_t>(known)].before) {
+      const Made& made = made_[static_cast<std::size_t>(known)];
+      if (made.normal == corner.normal_index && made.coordinate == corner.texcoord_index) return known;
     }
-    const auto index = static_cast<std::int32_t>(open_.mesh.vertices.size());
-    open_.mesh.vertices.push_back(vector_at(attributes_.vertices, corner.vertex_index, "vertex", file_));
+    const auto index = static_cast<std::int32_t>(made_.size());
+    made_.push_back({corner.normal_index, corner.texcoord_index, latest});
+    latest = index;
+    open_.mesh.vertices.push_back(position);
     Vector3d normal = Vector3d::Zero();
     if (corner.normal_index >= 0) {
       normal = vector_at(attributes_.normals, corner.normal_index, "normal", file_).normalized();
     }
     open_.mesh.normals.push_back(normal);
     open_.has_normal.push_back(normal.squaredNorm() > 0);
-    known_.emplace(std::pair{corner.vertex_index, corner.normal_index}, index);
+    open_.mesh.coordinates.push_back(coordinate(corner.texcoord_index));
     return index;
   }
 
+  Eigen::Vector2d coordinate(int index) {
+    if (index < 0) {
+      open_.has_coordinates = false;
+      return Eigen::Vector2d::Zero();
+    }
+    const std::size_t count = attributes_.texcoords.size() / 2;
+    if (static_cast<std::size_t>(index) >= count) {
+      throw std::invalid_argument(fmt::format("{}: a face refers to texture coordinate {}; expected 1 to {}",
+                                              file_.string(), index + 1, count));
+    }
+    const auto first = 2 * static_cast<std::size_t>(index);
+    const Eigen::Vector2d place(attributes_.texcoords[first], -attributes_.texcoords[first + 1]);
+    if (!place.allFinite()) {
+      throw std::invalid_argument(fmt::format("{}: texture coordinate {} is ({}, {}); expected finite numbers",
+                                              file_.string(), index + 1, place.x(), -place.y()));
+    }
+    return place;
+  }
+
+  struct Made {
+    int normal, coordinate;
+    std::int32_t before;  ///< vertex of the same position, or −1
+  };
   const tinyobj::attrib_t& attributes_;
   std::filesystem::path file_;
   OpenMesh open_;
-  std::map<std::pair<int, int>, std::int32_t> known_;
+  std::vector<Made> made_;
+  std::vector<std::int32_t> latest_;
 };
 
 double angle_between(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
@@ -115,20 +144,22 @@ void fill_normals(OpenMesh& open, const std::filesystem::path& file) {
   }
 }
 
-/// Grid of rows x columns points, closed around the columns, and around the rows too if asked.
+/// Grid of rows x columns squares that closes on itself along its columns, and along its rows if `closed`; otherwise
+/// its first and last rows are points. A vertex more along each closes the coordinates.
 template <class Point, class Normal>
-TriangleMesh grid_mesh(int rows, int columns, bool closed, const Point& point, const Normal& normal) {
+TriangleMesh grid_mesh(int rows, int columns, bool closed, const Point& point, const Normal& normal,
+                       const Eigen::Vector2d& lengths) {
   TriangleMesh mesh;
-  const int lines = closed ? rows : rows + 1;
-  for (int i = 0; i < lines; ++i) {
-    for (int j = 0; j < columns; ++j) {
-      const double u = static_cast<double>(i) / rows;
-      const double v = static_cast<double>(j) / columns;
+  for (int i = 0; i <= rows; ++i) {
+    for (int j = 0; j <= columns; ++j) {
+      const double u = static_cast<double>(closed ? i % rows : i) / rows;
+      const double v = static_cast<double>(j % columns) / columns;
       mesh.vertices.push_back(point(u, v));
       mesh.normals.push_back(normal(u, v));
+      mesh.coordinates.emplace_back(lengths.x() * j / columns, lengths.y() * i / rows);
     }
   }
-  const auto index = [&](int i, int j) { return (i % lines) * columns + j % columns; };
+  const auto index = [&](int i, int j) { return i * (columns + 1) + j; };
   for (int i = 0; i < rows; ++i) {
     for (int j = 0; j < columns; ++j) {
       mesh.triangles.push_back({index(i, j), index(i + 1, j), index(i + 1, j + 1)});
@@ -165,6 +196,7 @@ TriangleMesh read_obj(const std::filesystem::path& file) {
         fmt::format("{}: no triangle with an area; expected a mesh with at least one face", file.string()));
   }
   fill_normals(open, file);
+  if (!open.has_coordinates) open.mesh.coordinates.clear();
   return std::move(open.mesh);
 }
 
@@ -174,7 +206,7 @@ TriangleMesh sphere_mesh(int rows) {
     return Vector3d(std::sin(latitude) * std::cos(v * turn), std::sin(latitude) * std::sin(v * turn),
                     std::cos(latitude));
   };
-  return grid_mesh(rows, 2 * rows, false, point, point);
+  return grid_mesh(rows, 2 * rows, false, point, point, {turn, turn / 2});
 }
 
 TriangleMesh torus_mesh(double tube, int rows) {
@@ -185,7 +217,13 @@ TriangleMesh torus_mesh(double tube, int rows) {
   const auto point = [&](double u, double v) -> Vector3d {
     return Vector3d(std::cos(v * turn), std::sin(v * turn), 0) + tube * normal(u, v);
   };
-  return grid_mesh(rows, 2 * rows, true, point, normal);
+  return grid_mesh(rows, 2 * rows, true, point, normal, {turn, tube * turn});
+}
+
+TriangleMesh solid_mesh(std::string_view name) {
+  if (name == "sphere") return sphere_mesh(256);
+  if (name == "torus") return torus_mesh(0.45, 256);
+  throw std::invalid_argument(fmt::format("solid {}: expected sphere or torus", name));
 }
 
 }  // namespace textonbench

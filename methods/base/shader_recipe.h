@@ -7,18 +7,25 @@
 //
 // with the types of gpu/shaders/plane.glsl: the value of the field at a point whose pixel has the footprint's columns
 // as its sides. A compute shader calls it in all invocations of a work group together, and `tile` then holds all their
-// points; a fragment shader calls it for one point at a time.
+// points; a fragment shader calls it for one point at a time. Where GRADIENTS is 1, a recipe with `gradients` also has
+//
+//   void gradient_at(PlanePoint point, mat2 footprint, PlaneBox tile, out float values[CHANNELS],
+//                    out vec2 gradients[CHANNELS]);
+//
+// and one `in_space` has texture_in_space() and gradient_in_space() of a SpacePoint (gpu/shaders/space.glsl) too.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "methods/base/image.h"
+#include "methods/base/mesh.h"
 #include "methods/base/random.h"
 
 namespace textonbench {
@@ -83,6 +90,13 @@ struct ShaderRecipe {
   std::vector<ShaderWords> words;
   /// Texture fetches that a pixel needs on average: those that its value depends on.
   double useful_fetches = 0;
+  /// Turns of loops that a pixel takes, where they are more than four a useful fetch.
+  double turns = 0;
+  bool gradients = false;
+  bool in_space = false;
+  /// What a model lives on, if it does, seen from `tilt` radians above the plane of x and y (surface_view.h).
+  std::shared_ptr<const TriangleMesh> mesh{};
+  double tilt = 0;
 };
 
 }  // namespace textonbench

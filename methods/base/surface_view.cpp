@@ -20,11 +20,7 @@ struct Hit {
 
 /// Vertices in picture coordinates: x right, y down, z towards the viewer.
 std::vector<Vector3d> project(const std::vector<Vector3d>& vertices, Extent size, double tilt) {
-  // The viewer looks from +x along −x; y is to the right and z up.
-  Matrix3d rotation;
-  rotation << 0, 1, 0,                     //
-      std::sin(tilt), 0, -std::cos(tilt),  //
-      std::cos(tilt), 0, std::sin(tilt);
+  const Matrix3d rotation = view_rotation(tilt);
   const Vector3d center((size.width - 1) / 2.0, (size.height - 1) / 2.0, 0);
   std::vector<Vector3d> projected;
   projected.reserve(vertices.size());
@@ -69,7 +65,7 @@ SurfacePoint surface_point(const Vector3d& position, const Vector3d& normal) {
   return {.position = position, .u1 = east, .u2 = normal.cross(east), .normal = normal};
 }
 
-std::vector<ViewedPoint> view_mesh(const TriangleMesh& mesh, Extent size, double radius, double tilt) {
+std::vector<Vector3d> place_in_ball(const TriangleMesh& mesh, double radius) {
   Vector3d low = mesh.vertices.front();
   Vector3d high = low;
   for (const Vector3d& vertex : mesh.vertices) {
@@ -86,6 +82,23 @@ std::vector<ViewedPoint> view_mesh(const TriangleMesh& mesh, Extent size, double
   for (const Vector3d& vertex : mesh.vertices) {
     vertices.emplace_back((vertex - middle) * (radius / reach));
   }
+  return vertices;
+}
+
+double picture_radius(Extent size) { return 0.48 * std::min(size.width, size.height); }
+
+Matrix3d view_rotation(double tilt, double azimuth) {
+  // The viewer looks from +x along −x; y is to the right and z up.
+  Matrix3d rotation;
+  rotation << 0, 1, 0,                     //
+      std::sin(tilt), 0, -std::cos(tilt),  //
+      std::cos(tilt), 0, std::sin(tilt);
+  if (azimuth == 0) return rotation;
+  return rotation * Eigen::AngleAxisd(azimuth, Vector3d::UnitZ()).toRotationMatrix();
+}
+
+std::vector<ViewedPoint> view_mesh(const TriangleMesh& mesh, Extent size, double radius, double tilt) {
+  const std::vector<Vector3d> vertices = place_in_ball(mesh, radius);
   const std::vector<Vector3d> projected = project(vertices, size, tilt);
 
   std::vector<Hit> hits(static_cast<std::size_t>(size.area()));

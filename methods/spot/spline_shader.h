@@ -8,9 +8,7 @@
 
 namespace textonbench {
 
-/// The texture "texton" holds the coefficients times sqrt(K/λ), kernel by kernel and four channels a layer. With a
-/// filter they are padded with zeros to a square whose side is a power of two, and the mip levels are their averages
-/// over squares of 2^l from the first coefficient on: those of MipChain (texton_filter.h).
+/// Kernels are scaled by sqrt(K/λ) (kernel_texture.h).
 ///
 /// Manual fetches of a filter choose the level and the probes of it as KernelFilter does, and leave to the texture unit
 /// what is between texels and levels; hardware fetches hand it the footprint.

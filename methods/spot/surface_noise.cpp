@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <numbers>
 #include <utility>
 
 #include "methods/base/mesh.h"
 #include "methods/base/surface_view.h"
 #include "methods/spot/spline_spectrum.h"
+#include "methods/spot/surface_shader.h"
 #include "methods/spot/surface_sum.h"
 #include "methods/spot/texton_noise.h"
 
@@ -73,9 +75,8 @@ std::vector<DrawnPoint> points_of_plane(const Domain& domain) {
 }
 
 std::vector<DrawnPoint> points_of_mesh(const TriangleMesh& mesh, const Domain& domain, double tilt) {
-  const double radius = 0.48 * std::min(domain.size.width, domain.size.height);
   std::vector<DrawnPoint> points;
-  for (const ViewedPoint& seen : view_mesh(mesh, domain.size, radius, tilt)) {
+  for (const ViewedPoint& seen : view_mesh(mesh, domain.size, picture_radius(domain.size), tilt)) {
     const auto brightness = static_cast<float>(0.25 + 0.75 * seen.facing);
     DrawnPoint& drawn =
         points.emplace_back(DrawnPoint{.x = seen.x, .y = seen.y, .brightness = brightness, .point = seen.point});
@@ -108,7 +109,8 @@ std::optional<std::string> refuse_surface_domain(bool plane, const Domain& domai
 class SurfaceNoise final : public Model, public Gaussian {
  public:
   /// The plane when there is no mesh.
-  SurfaceNoise(SplineTexton texton, const SurfaceSumOptions& options, std::optional<TriangleMesh> mesh, double tilt)
+  SurfaceNoise(SplineTexton texton, const SurfaceSumOptions& options, std::shared_ptr<const TriangleMesh> mesh,
+               double tilt)
       : sum_(std::move(texton), options), mni_(options.mni), mesh_(std::move(mesh)), tilt_(tilt) {}
 
   Image synthesize(const Domain& domain, Seed seed) const override {
@@ -143,6 +145,13 @@ class SurfaceNoise final : public Model, public Gaussian {
   std::vector<double> mean() const override { return sum_.texton().coefficients.mean; }
   CrossSpectrum spectrum(Extent grid) const override { return spline_spectrum(sum_.texton(), grid); }
 
+  std::optional<ShaderRecipe> shader(const ShaderRequest& request) const override {
+    ShaderRecipe recipe = surface_noise_recipe(sum_, request);
+    recipe.mesh = mesh_;
+    recipe.tilt = tilt_;
+    return recipe;
+  }
+
   Footprint footprint(const Domain&) const override {
     std::size_t bytes = 0;
     for (const Image& kernel : sum_.texton().coefficients.kernels) {
@@ -157,7 +166,7 @@ class SurfaceNoise final : public Model, public Gaussian {
  private:
   SurfaceSum sum_;
   double mni_;
-  std::optional<TriangleMesh> mesh_;
+  std::shared_ptr<const TriangleMesh> mesh_;
   double tilt_;
 };
 
@@ -174,15 +183,10 @@ std::optional<std::string> refuse_surface_noise(const Problem& problem, const Pa
   return refuse_surface_domain(surface == "plane", domain);
 }
 
-std::optional<TriangleMesh> mesh_of(const Params& params) {
+std::shared_ptr<const TriangleMesh> mesh_of(const Params& params) {
   const std::string& surface = params.text("surface");
-  if (surface == "sphere") {
-    return sphere_mesh(256);
-  }
-  if (surface == "torus") {
-    return torus_mesh(0.45, 256);
-  }
-  return surface == "mesh" ? std::optional(read_obj(params.text("mesh"))) : std::nullopt;
+  if (surface == "plane") return nullptr;
+  return std::make_shared<const TriangleMesh>(surface == "mesh" ? read_obj(params.text("mesh")) : solid_mesh(surface));
 }
 
 }  // namespace
@@ -195,7 +199,7 @@ MethodEntry surface_noise_entry() {
           .refuses = refuse_surface_noise,
           .analyze = [](const Problem& problem, const Params& params, Seed seed) -> std::unique_ptr<Model> {
             require_usable(problem.exemplar);
-            std::optional<TriangleMesh> mesh = mesh_of(params);
+            std::shared_ptr<const TriangleMesh> mesh = mesh_of(params);
             const SurfaceSumOptions options{
                 .impacts = params.text("impacts") == "poisson" ? ImpactProcess::poisson : ImpactProcess::stratified,
                 .mni = params.number("mni")};

@@ -119,6 +119,12 @@ SurfaceSum::SurfaceSum(SplineTexton texton, const SurfaceSumOptions& options)
   }
 }
 
+double SurfaceSum::scale() const {
+  return std::sqrt(static_cast<double>(texton_.coefficients.kernels.size())) / std::sqrt(intensity_ * thickness_ / 3);
+}
+
+std::uint64_t SurfaceSum::key(Seed seed) { return Stream(seed).child("surface").key(); }
+
 void SurfaceSum::add(const SurfacePoint& point, const SurfaceImpact& impact, std::span<double> sums) const {
   const Vector3d d = point.position - impact.position;
   const double height = 1 - 2 / thickness_ * std::abs(d.dot(point.normal));
@@ -192,8 +198,7 @@ void SurfaceSum::evaluate(std::span<const SurfacePoint> points, Seed seed, std::
   }
   const Stream stream = Stream(seed).child("surface");
   const std::size_t channels = start_.size();
-  const double scale =
-      std::sqrt(static_cast<double>(texton_.coefficients.kernels.size())) / std::sqrt(intensity_ * thickness_ / 3);
+  const double of_kernels = scale();
   const auto runs = runs_of(points, thickness_ / 4);
   parallel_for(static_cast<int>(runs.size()), [&](int run) {
     const std::span<const SurfacePoint> near = runs[static_cast<std::size_t>(run)];
@@ -202,7 +207,7 @@ void SurfaceSum::evaluate(std::span<const SurfacePoint> points, Seed seed, std::
     const auto first = static_cast<std::size_t>(near.data() - points.data());
     for (std::size_t i = 0; i < near.size(); ++i) {
       for (std::size_t c = 0; c < channels; ++c) {
-        out[c * points.size() + first + i] = static_cast<float>(start_[c] + scale * sums[i * channels + c]);
+        out[c * points.size() + first + i] = static_cast<float>(start_[c] + of_kernels * sums[i * channels + c]);
       }
     }
   });

@@ -41,6 +41,9 @@ class SpaceGrid {
   SpaceGrid(ImpactProcess process, double intensity, double side, int kernels);
 
   double side() const { return side_; }
+  ImpactProcess process() const { return process_; }
+  /// poisson_thresholds() of a cell's mean, none for one impact a cell.
+  const std::vector<std::uint32_t>& thresholds() const { return thresholds_; }
   /// Expected sum of weights a unit of volume.
   double mean_weight() const { return process_ == ImpactProcess::stratified ? 0 : intensity_; }
   /// Impacts of the cell [cx a, (cx + 1) a) x …, in their order, after those that are there. |cx|, |cy|, |cz| < 2^31.
@@ -79,6 +82,12 @@ class SurfaceSum {
   double thickness() const { return thickness_; }
   /// λ, impacts a cubic pixel.
   double intensity() const { return intensity_; }
+  /// Of a kernel in the sums: sqrt(K / (λ r / 3)).
+  double scale() const;
+  /// What the sums are added to, a channel each: m − E f / sqrt(λ r / 3).
+  const std::vector<double>& start() const { return start_; }
+  /// Of the words of cells: Philox of this key and the counter (cz, j, cx, cy).
+  static std::uint64_t key(Seed seed);
 
  private:
   void evaluate_near(std::span<const SurfacePoint> points, const Stream& stream, std::span<double> sums) const;
@@ -88,7 +97,7 @@ class SurfaceSum {
   double thickness_;
   double intensity_;
   SpaceGrid grid_;
-  std::vector<double> start_;  ///< m − E f / sqrt(λ r / 3)
+  std::vector<double> start_;
 };
 
 }  // namespace textonbench
