@@ -52,7 +52,7 @@ std::vector<double> time_turn(Renderer& renderer, const Frame& frame, bool softw
 std::vector<double> time_recipe(Context& context, const ShaderRecipe& recipe, const FrameTimingOptions& options,
                                 double share) {
   const bool software = context.info().software;
-  Renderer renderer(context, recipe, options.path);
+  Renderer renderer(context, recipe, options.path, options.surface);
   // The first frame compiles.
   const double typical = std::max(1e-3, time_turn(renderer, options.frame, software, 1, 1).front());
   int frames = options.frames > 0 ? options.frames : usual_frames;

@@ -13,6 +13,7 @@ namespace textonbench {
 struct FrameTimingOptions {
   ShaderPath path = ShaderPath::fragment;
   Frame frame;
+  std::optional<SurfaceScene> surface{};  ///< that the frame shows
   /// 0: 200 after 20 to warm up. In software 3 to 200, after a tenth as many, that take about `software_seconds`.
   int frames = 0;
   double software_seconds = 10;

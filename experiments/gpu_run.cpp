@@ -13,6 +13,7 @@
 #include "experiments/frame_timing.h"
 #include "experiments/metrics/metric.h"
 #include "experiments/metrics/reference_error.h"
+#include "experiments/scene.h"
 #include "experiments/shader_models.h"
 #include "gpu/renderer.h"
 
@@ -61,6 +62,23 @@ const std::array gpu_param_specs{
               .help = "of the line of sight below the horizon, of a camera over the ground; 0: the plane from above",
               .min = 0,
               .max = 89},
+    ParamSpec{.name = "scene",
+              .default_value = "plane",
+              .unit = "",
+              .help = "what is drawn where pitch is 0: the plane, or a surface by its coordinates",
+              .choices = {"plane", "sphere", "torus"}},
+    ParamSpec{.name = "bump",
+              .default_value = 0.0,
+              .unit = "pixel",
+              .help = "height of a unit of the texture that shades a surface",
+              .min = -1e6,
+              .max = 1e6},
+    ParamSpec{.name = "displacement",
+              .default_value = 0.0,
+              .unit = "pixel",
+              .help = "height of a unit of the texture that moves the corners of a surface's mesh",
+              .min = -1e6,
+              .max = 1e6},
     ParamSpec{
         .name = "height", .default_value = 64.0, .unit = "pixel", .help = "of that camera", .min = 1e-3, .max = 1e6},
 };
@@ -168,19 +186,31 @@ class GpuDrawer : public FrameDrawer {
     return {.seed = seed, .fetch = fetch(), .filter = filter, .window = window, .half_float = options_.boolean("half")};
   }
 
-  Frame frame(const Domain& domain, int supersampling) const {
-    Frame frame;
-    frame.size = domain.size;
-    frame.step = domain.step;
-    frame.supersampling = supersampling;
+  SceneOptions scene(int supersampling) const {
+    SceneOptions scene{.scene = options_.text("scene"),
+                       .supersampling = supersampling,
+                       .bump = options_.number("bump"),
+                       .displacement = options_.number("displacement")};
     if (const double pitch = options_.number("pitch"); pitch > 0) {
-      frame.ground = GroundViewOptions{.height = options_.number("height"), .pitch = pitch * std::numbers::pi / 180};
+      if (scene.scene != "plane") {
+        throw std::invalid_argument(
+            fmt::format("gpu.pitch = {} with gpu.scene = {}: expected one of them", pitch, scene.scene));
+      }
+      scene.scene = "ground";
+      scene.height = options_.number("height");
+      scene.pitch = pitch;
+      scene.field = GroundViewOptions{}.field * 180 / std::numbers::pi;
     }
-    return frame;
+    return scene;
+  }
+
+  Image draw_recipe(const Domain& domain, const ShaderRecipe& recipe, int supersampling) {
+    const SceneOptions shown = scene(supersampling);
+    return Renderer(*context_, recipe, path(), surface_scene(shown, recipe)).draw(scene_frame(shown, domain, recipe));
   }
 
   Image draw_with(const Domain& domain, const ShaderRequest& request, const Model& model, int supersampling) {
-    return Renderer(*context_, shader_of(model, spec_.method, request), path()).draw(frame(domain, supersampling));
+    return draw_recipe(domain, shader_of(model, spec_.method, request), supersampling);
   }
 
   /// By the shader of trilinear filtering in the kernels' own windows, on a texture without levels: what a filter is
@@ -194,12 +224,17 @@ class GpuDrawer : public FrameDrawer {
       texture.filter = ShaderFilter::none;
       texture.levels.resize(1);
     }
-    return Renderer(*context_, recipe, path()).draw(frame(domain, 1));
+    return draw_recipe(domain, recipe, 1);
   }
 
   FrameTiming time_with(const Domain& domain, const ShaderRequest& request, const Model& model) {
-    return time_frames(*context_, shader_of(model, spec_.method, request),
-                       {.path = path(), .frame = frame(domain, supersampling()), .software_seconds = software_budget});
+    const ShaderRecipe recipe = shader_of(model, spec_.method, request);
+    const SceneOptions shown = scene(supersampling());
+    return time_frames(*context_, recipe,
+                       {.path = path(),
+                        .frame = scene_frame(shown, domain, recipe),
+                        .surface = surface_scene(shown, recipe),
+                        .software_seconds = software_budget});
   }
 
   const FrameTiming& time(const Model& model, const Domain& domain, Seed seed) {

@@ -207,7 +207,8 @@ void Renderer::submit(const Frame& frame) {
   for (int pass = 0; pass < (frame.surface ? n * n : n); ++pass) {
     if (frame.surface) {
       // In whole samples from the middle one.
-      const Eigen::Vector2d sample(pass % n - (n - 1) / 2.0, pass / n - (n - 1) / 2.0);
+      const int row = pass / n, column = pass % n;
+      const Eigen::Vector2d sample(column - (n - 1) / 2.0, row - (n - 1) / 2.0);
       resources_->surface->draw(sample / n);
       resources_->program.use();
       resources_->frame.bind(path_ == ShaderPath::compute);

@@ -77,10 +77,12 @@ std::vector<std::pair<std::string, std::string>> surface_defines(const ShaderRec
   if (scene != nullptr) defines.emplace_back("SURFACE", "1");
   if (bumpy) defines.emplace_back("BUMPY", "1");
   if (scene != nullptr && scene->displaced) defines.emplace_back("DISPLACED", "1");
-  defines.emplace_back("GRADIENTS", bumpy ? "1" : "0");
-  if (bumpy && !recipe.gradients) {
+  const bool is_derivative = recipe.derivative >= 0;
+  if (is_derivative) defines.emplace_back("DERIVATIVE", std::to_string(recipe.derivative));
+  defines.emplace_back("GRADIENTS", bumpy || is_derivative ? "1" : "0");
+  if ((bumpy || is_derivative) && !recipe.gradients) {
     throw std::invalid_argument(fmt::format(
-        "bump mapping by {}: its shader has no gradients with these options; of splines, expected order 1 or more and "
+        "derivatives of {}, which bump mapping takes: its shader has no gradients with these options; of splines, expected order 1 or more and "
         "no filter",
         recipe.shader));
   }

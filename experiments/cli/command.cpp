@@ -62,6 +62,11 @@ void ModelOptions::add_domain_to(CLI::App& app) {
   app.add_option("--step", step, "Distance of a sample's pixels in pixels of the exemplar, for noises of the plane")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
+  app.add_option("--origin", origin, "Place X,Y of a window's first pixel, in pixels of the exemplar (0,0)")
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("X,Y")
+      ->excludes(torus);
 }
 
 std::map<std::string, ParamValue> ModelOptions::given_params(std::span<const ParamSpec> specs) const {
@@ -78,8 +83,9 @@ Params ModelOptions::read_params(const MethodEntry& entry) const { return {entry
 Domain ModelOptions::read_domain(const MethodEntry& entry, const Problem& problem, const Params& options) const {
   const Extent asked = read_size();
   Domain domain{.size = asked.area() > 0 ? asked : problem.exemplar.pixels.extent(),
+                .origin = read_origin(),
                 .step = step,
-                .periodic = periodic || (size.empty() && !no_periodic)};
+                .periodic = periodic || (size.empty() && !no_periodic && origin.empty())};
   if (!periodic && domain.periodic && entry.refuses(problem, options, domain)) {
     Domain window = domain;
     window.periodic = false;
@@ -87,6 +93,8 @@ Domain ModelOptions::read_domain(const MethodEntry& entry, const Problem& proble
   }
   return domain;
 }
+
+Point2 ModelOptions::read_origin() const { return origin.empty() ? Point2{} : Point2{origin[0], origin[1]}; }
 
 Extent ModelOptions::read_size() const { return size.empty() ? Extent{} : parse_size(size); }
 

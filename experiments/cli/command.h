@@ -56,13 +56,14 @@ void set_examples(CLI::App& command, const std::string& examples);
 /// Prints the one JSON document of --json.
 void print_json(const nlohmann::ordered_json& document);
 
-/// METHOD EXEMPLAR, [-p name=value]... [--seed N], and [--size WxH] [--periodic|--no-periodic] [--step S] of fit, synth
-/// and measure.
+/// METHOD EXEMPLAR, [-p name=value]... [--seed N], and [--size WxH] [--periodic|--no-periodic] [--step S] [--origin
+/// X,Y] of fit, synth and measure.
 struct ModelOptions {
   std::string method, exemplar, size;
   std::vector<std::string> params;
   bool periodic = false, no_periodic = false;
   double step = 1;
+  std::vector<double> origin;  ///< none: (0, 0)
   std::uint64_t seed = 1;
 
   void add_method_to(CLI::App& app, bool required = true);
@@ -72,6 +73,7 @@ struct ModelOptions {
   Params read_params(const MethodEntry& entry) const;
   /// The size asked for, or 0x0 for the exemplar's own.
   Extent read_size() const;
+  Point2 read_origin() const;
   /// What to sample on. Without further words it is the exemplar's own torus, or a window of its size where the method
   /// serves no torus; for a size of one's own, a window of the plane.
   Domain read_domain(const MethodEntry& entry, const Problem& problem, const Params& options) const;

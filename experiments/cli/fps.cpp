@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include "experiments/cli/command.h"
 #include "experiments/cli/fitted.h"
+#include "experiments/cli/frame_options.h"
 #include "experiments/cli/gpu_options.h"
 #include "experiments/cli/table.h"
 #include "experiments/execute.h"
@@ -23,37 +23,23 @@ namespace {
 struct FpsOptions {
   ModelOptions model;
   GpuOptions gpu;
+  FrameOptions frame;
   int frames = 0;
-  int supersampling = 1;
-  bool ground = false;
-  double height = 64, pitch = 20, field = 60, furthest = 64;
   bool json = false;
 };
 
-Frame timed_frame(const FpsOptions& options, Extent size) {
-  constexpr double degree = std::numbers::pi / 180;
-  Frame frame;
-  frame.size = size;
-  frame.supersampling = options.supersampling;
-  if (options.ground) {
-    frame.ground = GroundViewOptions{.height = options.height,
-                                     .pitch = options.pitch * degree,
-                                     .field = options.field * degree,
-                                     .furthest = options.furthest};
-  }
-  return frame;
-}
-
 /// What all paths have in common.
 nlohmann::ordered_json describe(const FpsOptions& options, const Fitted& fitted, const ContextInfo& info,
-                                const ShaderRecipe& recipe) {
+                                const ShaderRecipe& recipe, const SceneOptions& scene) {
   nlohmann::ordered_json document = to_json(info);
   document["method"] = options.model.method;
   document["exemplar"] = options.model.exemplar;
   document["seed"] = options.model.seed;
   document["size"] = {fitted.domain.size.width, fitted.domain.size.height};
-  document["supersampling"] = options.supersampling;
-  document["ground"] = options.ground;
+  document["supersampling"] = scene.supersampling;
+  document["scene"] = scene.scene;
+  document["bump"] = scene.bump;
+  document["displacement"] = scene.displacement;
   document["channels"] = recipe.channels;
   if (!recipe.textures.empty()) {
     const SplineTexton* spline = fitted.model->spline_texton();
@@ -105,13 +91,16 @@ int time_method(const FpsOptions& options, const GlobalOptions& globals) {
   const Fitted fitted = fit_to_exemplar(options.model, globals.quiet);
   const ShaderRecipe recipe =
       shader_of(*fitted.model, options.model.method, options.gpu.read_request(sample_seed(options.model.seed, 0)));
+  const SceneOptions scene = options.frame.read(recipe);
+  const std::optional<SurfaceScene> surface = surface_scene(scene, recipe);
   const std::vector<ShaderPath> paths = options.gpu.read_paths(context->info());
   std::vector<FrameTiming> timings;
   timings.reserve(paths.size());
   for (const ShaderPath path : paths) {
     timings.push_back(time_frames(*context, recipe,
                                   {.path = path,
-                                   .frame = timed_frame(options, fitted.domain.size),
+                                   .frame = scene_frame(scene, {.size = fitted.domain.size}, recipe),
+                                   .surface = surface,
                                    .frames = options.frames,
                                    .software_seconds = 10.0 / static_cast<double>(paths.size()),
                                    .show_progress = !globals.quiet}));
@@ -123,7 +112,7 @@ int time_method(const FpsOptions& options, const GlobalOptions& globals) {
     }
     return 0;
   }
-  nlohmann::ordered_json document = describe(options, fitted, context->info(), recipe);
+  nlohmann::ordered_json document = describe(options, fitted, context->info(), recipe, scene);
   if (timings.size() == 1) {
     document.update(to_json(timings.front()));
   } else {
@@ -137,7 +126,7 @@ int time_method(const FpsOptions& options, const GlobalOptions& globals) {
 
 Command fps_command(CLI::App& app, const GlobalOptions& globals) {
   const auto options = std::make_shared<FpsOptions>();
-  CLI::App* fps = app.add_subcommand("fps", "Measure how fast a graphics processor draws a noise of the plane");
+  CLI::App* fps = app.add_subcommand("fps", "Measure how fast a graphics processor draws a noise");
   options->model.add_method_to(*fps);
   options->model.add_params_to(*fps);
   options->model.size = "1024x1024";
@@ -146,31 +135,12 @@ Command fps_command(CLI::App& app, const GlobalOptions& globals) {
   fps->add_option("--frames", options->frames,
                   "Frames to time (200 after 20 to warm up; in software as many as take some ten seconds, 3 at least)")
       ->check(CLI::Range(1, 100000));
-  fps->add_option("--supersampling", options->supersampling, "N: mean of N x N points a pixel")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 64));
-  CLI::Option* ground = fps->add_flag("--ground", options->ground, "Draw the ground under a camera");
-  fps->add_option("--height", options->height, "Of the camera, in pixels of the exemplar")
-      ->capture_default_str()
-      ->check(CLI::Range(1e-3, 1e6))
-      ->needs(ground);
-  fps->add_option("--pitch", options->pitch, "Of its line of sight below the horizon, degrees")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 89))
-      ->needs(ground);
-  fps->add_option("--field", options->field, "Its horizontal angle of view, degrees")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 170))
-      ->needs(ground);
-  fps->add_option("--furthest", options->furthest, "Longest side of a pixel on the ground, in pixels of the exemplar")
-      ->capture_default_str()
-      ->check(CLI::Range(1e-3, 256.0))
-      ->needs(ground);
+  options->frame.add_to(*fps);
   fps->add_flag("--json", options->json,
                 "Print one JSON document; of --path all, what differs by path is in its list \"results\"");
   set_examples(*fps,
                "  textonbench fps texton_noise mamurk_e_1 -p impacts=poisson -p mni=30 -p support=64 --path all\n"
-               "  textonbench fps texton_noise mamurk_e_1 --ground --filter anisotropic --size 1920x1080 --json");
+               "  textonbench fps texton_noise mamurk_e_1 --scene ground --filter anisotropic --size 1920x1080 --json");
   return {fps, [options, &globals] { return time_method(*options, globals); }};
 }
 

@@ -14,6 +14,7 @@
 
 #include "experiments/cli/command.h"
 #include "experiments/cli/fitted.h"
+#include "experiments/cli/frame_options.h"
 #include "experiments/cli/gpu_options.h"
 #include "experiments/cli/sample_file.h"
 #include "experiments/execute.h"
@@ -34,6 +35,7 @@ struct SynthOptions {
   std::filesystem::path model_file;
   std::filesystem::path output;
   GpuOptions gpu;
+  FrameOptions frame;
   bool on_gpu = false;
   bool json = false;
 };
@@ -58,8 +60,10 @@ Fitted read_fitted(const SynthOptions& options) {
   const bool is_text = options.model_file.extension() == ".texton";
   const ModelFile file = is_text ? read_texton_as_model(options.model_file) : read_model_file(options.model_file);
   const Extent asked_size = asked.read_size();
-  const Domain domain{
-      .size = asked_size.area() > 0 ? asked_size : Extent{512, 512}, .step = asked.step, .periodic = asked.periodic};
+  const Domain domain{.size = asked_size.area() > 0 ? asked_size : Extent{512, 512},
+                      .origin = asked.read_origin(),
+                      .step = asked.step,
+                      .periodic = asked.periodic};
   if (const std::optional<std::string> reason =
           file.order ? refuse_spline_noise(domain) : refuse_spot_noise(file.texton.extent(), domain)) {
     throw std::invalid_argument(fmt::format("{} cannot do this: {}", options.model_file.string(), *reason));
@@ -96,25 +100,27 @@ void draw_bands(const Draw& draw, const Fitted& fitted, const std::filesystem::p
   writer->finish();
 }
 
-std::unique_ptr<Renderer> make_renderer(const SynthOptions& options, const Fitted& fitted, Context& context,
-                                        Seed seed) {
+/// A renderer and what it shows.
+struct GpuDrawing {
+  std::unique_ptr<Renderer> renderer;
+  ShaderRecipe recipe;
+  SceneOptions scene;
+};
+
+GpuDrawing prepare_drawing(const SynthOptions& options, const Fitted& fitted, Context& context, Seed seed) {
   if (fitted.domain.periodic) {
     throw std::invalid_argument("--renderer gpu draws windows of the plane: expected --no-periodic or --size");
   }
   ShaderRequest request = options.gpu.read_request(seed);
-  request.near = {fitted.domain.step * fitted.domain.size.width / 2,
-                  fitted.domain.step * fitted.domain.size.height / 2};
+  const Domain& domain = fitted.domain;
+  request.near = {domain.origin.x + domain.step * domain.size.width / 2,
+                  domain.origin.y + domain.step * domain.size.height / 2};
   const std::string name = options.model.method.empty() ? options.model_file.string() : options.model.method;
-  const ShaderRecipe recipe = shader_of(*fitted.model, name, request);
-  return std::make_unique<Renderer>(context, recipe, options.gpu.read_path(context.info()));
-}
-
-Frame frame_of(const Domain& domain) {
-  Frame frame;
-  frame.size = domain.size;
-  frame.origin = {domain.origin.x, domain.origin.y};
-  frame.step = domain.step;
-  return frame;
+  GpuDrawing drawing{.renderer = nullptr, .recipe = shader_of(*fitted.model, name, request), .scene = {}};
+  drawing.scene = options.frame.read(drawing.recipe);
+  drawing.renderer = std::make_unique<Renderer>(context, drawing.recipe, options.gpu.read_path(context.info()),
+                                                surface_scene(drawing.scene, drawing.recipe));
+  return drawing;
 }
 
 int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
@@ -124,7 +130,7 @@ int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
   if (from_file != asked.method.empty() || from_file != asked.exemplar.empty()) {
     throw std::invalid_argument("synth: expected either METHOD EXEMPLAR or --model FILE");
   }
-  if (options.gpu.any_given() && !options.on_gpu) {
+  if ((options.gpu.any_given() || options.frame.any_given()) && !options.on_gpu) {
     throw std::invalid_argument("options of --renderer gpu without it: expected --renderer gpu");
   }
   const std::unique_ptr<Context> context = options.on_gpu ? options.gpu.make_context() : nullptr;
@@ -136,14 +142,16 @@ int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
   }
   std::vector<std::filesystem::path> files{options.output};
   const Seed seed = sample_seed(asked.seed, 0);
-  std::unique_ptr<Renderer> renderer;
-  if (context) renderer = make_renderer(options, fitted, *context, seed);
+  std::optional<GpuDrawing> gpu;
+  if (context) gpu = prepare_drawing(options, fitted, *context, seed);
   const Draw draw = [&](const Domain& window) {
-    return renderer ? renderer->draw(frame_of(window)) : fitted.model->synthesize(window, seed);
+    return gpu ? gpu->renderer->draw(scene_frame(gpu->scene, window, gpu->recipe))
+               : fitted.model->synthesize(window, seed);
   };
+  const bool is_flat = !gpu || (gpu->scene.scene == "plane" && gpu->recipe.mesh == nullptr);
   const Clock::time_point start = Clock::now();
   double synthesize_seconds = 0;
-  if (domain.size.area() > most_pixels_at_once && !domain.periodic && options.output.extension() == ".exr") {
+  if (domain.size.area() > most_pixels_at_once && !domain.periodic && is_flat && options.output.extension() == ".exr") {
     draw_bands(draw, fitted, options.output, globals.quiet);
     synthesize_seconds = std::chrono::duration<double>(Clock::now() - start).count();
   } else {
@@ -200,12 +208,15 @@ Command synth_command(CLI::App& app, const GlobalOptions& globals) {
       ->check(CLI::IsMember({"cpu", "gpu"}))
       ->type_name("cpu|gpu");
   options->gpu.add_to(*synth);
+  options->frame.add_to(*synth);
   synth->add_flag("--json", options->json, "Print one JSON document");
   set_examples(*synth,
                "  textonbench synth rpn mamurk_a_1 --seed 3 -o rpn.png\n"
                "  textonbench synth adsn photo.jpg --size 1024x768 -o large.png\n"
                "  textonbench synth texton_noise albedo.png+normal.png+height.png --size 1024x1024 -o material.exr\n"
                "  textonbench synth texton_noise mamurk_e_1 --size 1024x768 --renderer gpu -o gpu.png\n"
+               "  textonbench synth texton_noise HR_Cork -p order=3 --size 800x800 --renderer gpu --scene torus "
+               "--bump 8 -o torus.png\n"
                "  textonbench synth --model texton.json -p impacts=stratified -p mni=5 -o from_file.png");
   return {synth, [options, &globals] { return synthesize(*options, globals); }};
 }

@@ -51,6 +51,16 @@ GaborWindow window_of(GaborBand band, mat2 footprint) {
   return window;
 }
 
+// A y, half the gradient of y^T A y.
+vec2 window_slope(GaborWindow window, vec2 y) {
+  float sheared = window.along * (y.x + window.shear * y.y);
+  return vec2(sheared, window.shear * sheared + window.across * y.y);
+}
+
+#if GRADIENTS
+vec2 slopes[CHANNELS];  // sums of derivatives by x and y
+#endif
+
 // Adds the kernel of an impact at a point.
 void add_kernel(GaborBand band, GaborWindow window, PlanePoint point, PlaneImpact impact, inout float sums[CHANNELS]) {
   ivec2 fine = point.fine - impact.place.fine;
@@ -73,14 +83,20 @@ void add_kernel(GaborBand band, GaborWindow window, PlanePoint point, PlaneImpac
   form += dot(window.loss, squares);
   kernel.weight *= window.height;
   // The frequency has become f − A S f, A filtered.
-  vec2 slope = vec2(window.along * sheared, window.along * window.shear * sheared + window.across * away.y);
-  turn -= dot(slope, vec2(dot(window.blur.xy, cycles), dot(window.blur.yz, cycles)));
+  vec2 blurred = vec2(dot(window.blur.xy, cycles), dot(window.blur.yz, cycles));
+  turn -= dot(window_slope(window, away), blurred);
+  cycles -= window_slope(window, blurred);
 #endif
   float angle = 2.0 * pi * (turn - floor(turn + 0.5));
   vec2 wave = kernel.weight * exp(-pi * form) * vec2(cos(angle), sin(angle));
   for (int c = 0; c < CHANNELS; ++c) {
     uint color = at + uint(2 + 2 * c);
-    sums[c] += table_float(color) * wave.x - table_float(color + 1u) * wave.y;
+    float real = table_float(color), imaginary = table_float(color + 1u);
+    sums[c] += real * wave.x - imaginary * wave.y;
+#if GRADIENTS
+    slopes[c] -= 2.0 * pi * ((real * wave.x - imaginary * wave.y) * window_slope(window, away) +
+                             (real * wave.y + imaginary * wave.x) * cycles);
+#endif
   }
 }
 
@@ -110,3 +126,12 @@ void texture_at(PlanePoint point, mat2 footprint, PlaneBox tile, out float value
   for (uint b = 0u; b < uint(BANDS); ++b) add_band(band_at(b), point, footprint, sums);
   for (int c = 0; c < CHANNELS; ++c) values[c] = start[c] + sums[c];
 }
+
+#if GRADIENTS
+void gradient_at(PlanePoint point, mat2 footprint, PlaneBox tile, out float values[CHANNELS],
+                 out vec2 gradients[CHANNELS]) {
+  for (int c = 0; c < CHANNELS; ++c) slopes[c] = vec2(0.0);
+  texture_at(point, footprint, tile, values);
+  gradients = slopes;
+}
+#endif

@@ -1,7 +1,8 @@
 // Local random-phase noise (methods/sparse/wave_field.h): waves whose bins, colors and phases are the processor's bit for
 // bit. LAYERS is the number of layers, TERMS that of the window's coefficients, EVEN 1 where sums are divided by the root
 // of the squared windows' sum. STRUCTURE is 1 where phases are fixed (methods/sparse/fixed_phases.h), and TURBULENT the
-// number of layers of each axis of turbulence, which follow those of the noise: their channel 0 counts.
+// number of layers of each axis of turbulence, which follow those of the noise: their channel 0 counts. GRADIENTS is 1
+// where derivatives by x and y are summed into `slopes` beside the values.
 #include "plane.glsl"
 #include "philox.glsl"
 
@@ -11,6 +12,12 @@ uniform int turn_shift;             // from 2^−22 pixel to 2^−32 turn of a b
 uniform usamplerBuffer tables;      // LAYER_WORDS a layer, then what they point to
 
 #define LAYER_WORDS 16
+
+const float pi = 3.14159265358979;
+
+#if GRADIENTS
+vec2 slopes[CHANNELS];
+#endif
 
 uint table(uint at) { return texelFetch(tables, int(at)).x; }
 float table_float(uint at) { return uintBitsToFloat(table(at)); }
@@ -46,8 +53,22 @@ vec2 unit_wave(uint turns) {
   return vec2(cos(angle), sin(angle));
 }
 
-// Adds the waves of a cell, of the words (u, v) each: v is the phase, u the bin and the color.
-void add_wave(WaveLayer layer, uint j, uint u, uint v, uvec2 turns, float window, inout float sums[CHANNELS]) {
+// Adds weight Re(c wave) of the channels' factors c in the table. `slope` is the weight's gradient, and `angular` the
+// angle of the wave's.
+void add_term(uint at, vec2 wave, float weight, vec2 slope, vec2 angular, inout float sums[CHANNELS]) {
+  for (int c = 0; c < CHANNELS; ++c) {
+    float real = table_float(at + uint(2 * c)), imaginary = table_float(at + uint(2 * c + 1));
+    float term = real * wave.x - imaginary * wave.y;
+    sums[c] += weight * term;
+#if GRADIENTS
+    slopes[c] += slope * term - weight * (real * wave.y + imaginary * wave.x) * angular;
+#endif
+  }
+}
+
+// Adds the waves of a cell, of the words (u, v) each: v is the phase, u the bin and the color. `slope` is the window's.
+void add_wave(WaveLayer layer, uint j, uint u, uint v, uvec2 turns, float window, vec2 slope,
+              inout float sums[CHANNELS]) {
   uint from = table(layer.first + j);
   uint high, rest;
   umulExtended(u, table(layer.first + j + 1u) - from, high, rest);
@@ -56,23 +77,32 @@ void add_wave(WaveLayer layer, uint j, uint u, uint v, uvec2 turns, float window
   uint color = 0u;
   for (uint c = 1u; c < layer.colors; ++c) color += uint(rest >= table(at + c));
   int kx = bitfieldExtract(int(bin), 0, 16), ky = bitfieldExtract(int(bin), 16, 16);
-  vec2 wave = window * unit_wave(uint(kx) * turns.x + uint(ky) * turns.y + v);
+  vec2 wave = unit_wave(uint(kx) * turns.x + uint(ky) * turns.y + v);
+  vec2 angular = 2.0 * pi * exp2(float(turn_shift - 10)) * vec2(kx, ky);
   at += layer.colors + color * uint(2 * CHANNELS);
-  for (int c = 0; c < CHANNELS; ++c) {
-    sums[c] += table_float(at + uint(2 * c)) * wave.x - table_float(at + uint(2 * c + 1)) * wave.y;
-  }
+  add_term(at, wave, window, slope, angular, sums);
 }
 
-float window_at(float t) {
-  float polynomial = 0.0;
-  for (int m = TERMS - 1; m >= 0; --m) polynomial = polynomial * t + window_terms[m];
-  return t * sqrt(t) * polynomial;
+// The window and its derivative by t.
+vec2 window_at(float t) {
+  float polynomial = 0.0, derivative = 0.0;
+  for (int m = TERMS - 1; m >= 0; --m) {
+    derivative = derivative * t + polynomial;
+    polynomial = polynomial * t + window_terms[m];
+  }
+  float root = sqrt(t);
+  return vec2(t * root * polynomial, root * (1.5 * polynomial + t * derivative));
 }
 
 void add_layer(WaveLayer layer, PlanePoint point, inout float values[CHANNELS]) {
   float sums[CHANNELS];
   for (int c = 0; c < CHANNELS; ++c) sums[c] = 0.0;
   float squares = 0.0;
+#if GRADIENTS
+  vec2 kept[CHANNELS] = slopes;
+  for (int c = 0; c < CHANNELS; ++c) slopes[c] = vec2(0.0);
+  vec2 squares_slope = vec2(0.0);
+#endif
   float spacing = float(layer.spacing.x) * 0.0009765625 + float(layer.spacing.y) * (1.0 / 4194304.0);
   // Windows of the third cells away are zero to rounding, so that a cell taken for the nearest where two are does no harm.
   ivec2 nearest = ivec2(floor(plane_difference(point, layer.center) / spacing + 0.5));
@@ -84,14 +114,19 @@ void add_layer(WaveLayer layer, PlanePoint point, inout float values[CHANNELS]) 
     vec2 away = (vec2(coarse) * 0.0009765625 + vec2(fine) * (1.0 / 4194304.0)) / spacing;
     float t = 1.0 - dot(away, away) / 2.25;
     if (t <= 0.0) continue;
-    float window = window_at(t);
+    vec2 windowed = window_at(t);
+    float window = windowed.x;
+    vec2 slope = windowed.y * (-2.0 / (2.25 * spacing)) * away;
     squares += window * window;
+#if GRADIENTS
+    squares_slope += 2.0 * window * slope;
+#endif
     uvec2 turns = (uvec2(coarse) * 4096u + uvec2(fine)) << uint(turn_shift);
     uvec4 counter = uvec4(add_signed(layer.base_cell.xy, cell.x), add_signed(layer.base_cell.zw, cell.y));
     for (uint j = 0u; j < layer.waves; j += 2u) {
       uvec4 words = philox_block(uvec2(layer.key.x ^ (j >> 1u), layer.key.y), counter);
-      add_wave(layer, j, words.x, words.y, turns, window, sums);
-      if (j + 1u < layer.waves) add_wave(layer, j + 1u, words.z, words.w, turns, window, sums);
+      add_wave(layer, j, words.x, words.y, turns, window, slope, sums);
+      if (j + 1u < layer.waves) add_wave(layer, j + 1u, words.z, words.w, turns, window, slope, sums);
     }
   }
 #if EVEN
@@ -100,6 +135,15 @@ void add_layer(WaveLayer layer, PlanePoint point, inout float values[CHANNELS]) 
   float scale = 1.0;
 #endif
   for (int c = 0; c < CHANNELS; ++c) values[c] += scale * sums[c];
+#if GRADIENTS
+  for (int c = 0; c < CHANNELS; ++c) {
+    vec2 slope = scale * slopes[c];
+#if EVEN
+    slope -= 0.5 * scale * scale * scale * sums[c] * squares_slope;
+#endif
+    slopes[c] = kept[c] + slope;
+  }
+#endif
 }
 
 #if STRUCTURE
@@ -113,3 +157,12 @@ void texture_at(PlanePoint point, mat2 footprint, PlaneBox tile, out float value
   add_structure(point, values);
 #endif
 }
+
+#if GRADIENTS
+void gradient_at(PlanePoint point, mat2 footprint, PlaneBox tile, out float values[CHANNELS],
+                 out vec2 gradients[CHANNELS]) {
+  for (int c = 0; c < CHANNELS; ++c) slopes[c] = vec2(0.0);
+  texture_at(point, footprint, tile, values);
+  gradients = slopes;
+}
+#endif

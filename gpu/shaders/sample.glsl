@@ -1,8 +1,15 @@
-// The colors of a sample. BUMPY: of a surface whose normals are those of a relief of the texture.
+// The colors of a sample. BUMPY: of a surface whose normals are those of a relief of the texture. DERIVATIVE: that by x
+// (0) or y (1) in place of the values.
 #ifndef SURFACE
 
 void sample_at(View view, PlaneBox tile, out float values[CHANNELS]) {
+#ifdef DERIVATIVE
+  vec2 gradients[CHANNELS];
+  gradient_at(view.point, view.footprint, tile, values, gradients);
+  for (int c = 0; c < CHANNELS; ++c) values[c] = gradients[c][DERIVATIVE];
+#else
   texture_at(view.point, view.footprint, tile, values);
+#endif
 }
 
 #else

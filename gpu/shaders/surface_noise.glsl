@@ -152,7 +152,15 @@ void texture_in_space(SpacePoint point, mat2 footprint, out float values[CHANNEL
 }
 #endif
 
+SpacePoint on_plane(PlanePoint point) { return SpacePoint(ivec3(point.coarse, 0), ivec3(point.fine, 0), mat3(1.0)); }
+
 void texture_at(PlanePoint point, mat2 footprint, PlaneBox tile, out float values[CHANNELS]) {
-  SpacePoint place = SpacePoint(ivec3(point.coarse, 0), ivec3(point.fine, 0), mat3(1.0));
-  texture_in_space(place, footprint, values);
+  texture_in_space(on_plane(point), footprint, values);
 }
+
+#if GRADIENTS
+void gradient_at(PlanePoint point, mat2 footprint, PlaneBox tile, out float values[CHANNELS],
+                 out vec2 gradients[CHANNELS]) {
+  gradient_in_space(on_plane(point), footprint, values, gradients);
+}
+#endif

@@ -23,11 +23,12 @@ uniform ivec2 origin_coarse;      // place of the coordinates (0, 0), as in fram
 uniform uvec2 origin_fraction;
 
 out vec3 place;  // pixels of the picture
+out vec3 rest;   // the place before it is displaced
 out vec3 bent_normal;
 out vec2 coordinate;  // pixels of the texture
 
 void main() {
-  place = radius * corner;
+  rest = place = radius * corner;
   bent_normal = corner_normal;
   coordinate = coordinate_scale * corner_coordinate;
 #ifdef DISPLACED

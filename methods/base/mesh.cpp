@@ -96,7 +96,7 @@ class MeshBuilder {
                                               file_.string(), index + 1, count));
     }
     const auto first = 2 * static_cast<std::size_t>(index);
-    const Eigen::Vector2d place(attributes_.texcoords[first], -attributes_.texcoords[first + 1]);
+    Eigen::Vector2d place(attributes_.texcoords[first], -attributes_.texcoords[first + 1]);
     if (!place.allFinite()) {
       throw std::invalid_argument(fmt::format("{}: texture coordinate {} is ({}, {}); expected finite numbers",
                                               file_.string(), index + 1, place.x(), -place.y()));
@@ -153,7 +153,7 @@ TriangleMesh grid_mesh(int rows, int columns, bool closed, const Point& point, c
   for (int i = 0; i <= rows; ++i) {
     for (int j = 0; j <= columns; ++j) {
       const double u = static_cast<double>(closed ? i % rows : i) / rows;
-      const double v = static_cast<double>(j % columns) / columns;
+      const double v = static_cast<double>((j + columns / 2) % columns) / columns;
       mesh.vertices.push_back(point(u, v));
       mesh.normals.push_back(normal(u, v));
       mesh.coordinates.emplace_back(lengths.x() * j / columns, lengths.y() * i / rows);

@@ -93,6 +93,8 @@ struct ShaderRecipe {
   /// Turns of loops that a pixel takes, where they are more than four a useful fetch.
   double turns = 0;
   bool gradients = false;
+  /// What frames show: the values (−1), or their derivatives by x (0) or y (1).
+  int derivative = -1;
   bool in_space = false;
   /// What a model lives on, if it does, seen from `tilt` radians above the plane of x and y (surface_view.h).
   std::shared_ptr<const TriangleMesh> mesh{};

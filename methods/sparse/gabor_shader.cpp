@@ -147,6 +147,7 @@ class GaborTables {
 ShaderRecipe gabor_recipe(const GaborField& field, std::span<const double> mean, const ShaderRequest& request) {
   ShaderRecipe recipe;
   recipe.shader = "gabor";
+  recipe.gradients = true;
   recipe.channels = request.channels > 0 && request.channels < field.channels ? request.channels : field.channels;
   require_gabor_limits(field, request, recipe.channels);
   recipe.base = {std::round(request.near.x()), std::round(request.near.y())};

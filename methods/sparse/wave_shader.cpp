@@ -187,6 +187,7 @@ ShaderRecipe wave_recipe(const WaveField& field, const FixedPhases* fixed, std::
   require_shader_limits(field, request);
   ShaderRecipe recipe;
   recipe.shader = "local_random_phase";
+  recipe.gradients = true;
   recipe.channels = request.channels > 0 && request.channels < field.channels ? request.channels : field.channels;
   recipe.base = {std::round(request.near.x()), std::round(request.near.y())};
   constexpr auto pixel = static_cast<double>(std::int64_t{1} << plane_bits);

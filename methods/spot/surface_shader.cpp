@@ -54,6 +54,7 @@ ShaderRecipe surface_noise_recipe(const SurfaceSum& sum, const ShaderRequest& re
   recipe.uniforms.emplace_back("side_fraction", static_cast<std::uint32_t>((side - std::floor(side)) * 0x1p32));
   recipe.uniforms.emplace_back("thickness", static_cast<float>(sum.thickness()));
   std::vector<float> start;
+  start.reserve(static_cast<std::size_t>(recipe.channels));
   for (int c = 0; c < recipe.channels; ++c)
     start.push_back(static_cast<float>(sum.start()[static_cast<std::size_t>(c)]));
   recipe.uniforms.emplace_back("start", std::move(start));

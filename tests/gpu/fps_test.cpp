@@ -80,7 +80,7 @@ TEST_F(FpsTest, ShadersWithoutTexturesAreTimed) {
 }
 
 TEST_F(FpsTest, AllPathsAreRowsAndSoftwareIsCalledSo) {
-  const Outcome outcome = run(fps({"--size", "16x16", "--frames", "1", "--path", "all", "--ground"}));
+  const Outcome outcome = run(fps({"--size", "16x16", "--frames", "1", "--path", "all", "--scene", "ground"}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr(info_.renderer));
   EXPECT_THAT(outcome.out, HasSubstr("fragment"));
@@ -113,6 +113,10 @@ TEST_F(FpsTest, WhatTheRendererCannotDoIsTold) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
       {{"fps", "adsn", "white_noise"}, "adsn has no shader for a graphics processor: expected one of texton_noise"},
       {fps({"--size", "100000x2"}), "frame of 100000x2 pixels"},
+      {fps({"--pitch", "20"}), "--pitch on the scene plane: expected --scene ground"},
+      {fps({"--tilt", "20", "--scene", "ground"}), "--tilt on the scene ground: expected --scene sphere"},
+      {fps({"--scene", "nothing.obj"}), "scene nothing.obj: no such file"},
+      {fps({"--scene", "sphere", "--bump", "3", "-p", "order=0"}), "has no gradients"},
       {fps({"-p", "order=5"}), "take manual fetches"},
       {{"synth", "texton_noise", "white_noise", "--renderer", "gpu", "--path", "all", "-o", "x.png"},
        "expected one path"},
@@ -133,7 +137,7 @@ TEST(FpsInputTest, BadOptionsAreRefused) {
       {fps({"--filter", "box"}), "anisotropic"},
       {fps({"--frames", "0"}), "--frames"},
       {fps({"--supersampling", "65"}), "--supersampling"},
-      {fps({"--pitch", "20"}), "--ground"},
+
       {{"synth", "texton_noise", "white_noise", "--renderer", "tpu", "-o", "x.png"}, "cpu"},
       {{"synth", "texton_noise", "white_noise", "--half", "-o", "x.png"}, "expected --renderer gpu"}};
   for (const auto& [arguments, expected] : cases) {

@@ -126,7 +126,7 @@ TEST_F(GpuFaults, FramesBeyondTheLimits) {
   }
   const auto limits = AllOf(HasSubstr(" draws at most "), HasSubstr("take a smaller one, or the processor"));
   expect_refused(fps({"--size", "100000x100000"}), AllOf(HasSubstr("frame of 100000x100000 pixels: "), limits));
-  expect_refused(fps({"--size", "100000x100000", "--ground"}), limits);
+  expect_refused(fps({"--size", "100000x100000", "--scene", "ground"}), limits);
   expect_refused(synth({"--renderer", "gpu", "--size", "100000x100000"}), limits);
 }
 
