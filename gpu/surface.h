@@ -15,7 +15,7 @@ namespace textonbench {
 struct SurfaceScene {
   std::shared_ptr<const TriangleMesh> mesh;
   bool bumpy = false;      ///< normals are those of a relief of the texture, by its analytic gradient
-  bool displaced = false;  ///< vertices are moved by that relief
+  bool displaced = false;  ///< vertices are moved by that relief, outwards where it is above 1/2
 };
 
 /// The view of view_mesh() (surface_view.h): orthographic, of a mesh in a ball that fills the picture.

@@ -33,7 +33,7 @@ void FrameOptions::add_to(CLI::App& app) {
       number("--bump", &options_.bump, -1e6, 1e6,
              "Shades a surface as if a unit of the texture were so many of its pixels high"),
       number("--displacement", &options_.displacement, -1e6, 1e6,
-             "Moves the corners of a surface's mesh by so many pixels of the texture for a unit of it")};
+             "Moves the corners of a surface's mesh by so many pixels of the texture for a unit above 1/2")};
   given_.insert(given_.end(), of_ground_.begin(), of_ground_.end());
   given_.insert(given_.end(), of_surface_.begin(), of_surface_.end());
 }

@@ -1,4 +1,5 @@
-// The corners of a mesh in orthographic projection. DISPLACED: moved along their normals by the texture at their place.
+// The corners of a mesh in orthographic projection. DISPLACED: moved along their
+// normals by the texture at their place, outwards where it is above 1/2.
 #include "plane.glsl"
 #include "space.glsl"
 #ifdef DISPLACED
@@ -37,7 +38,7 @@ void main() {
 #else
   float height = height_at(moved(PlanePoint(origin_coarse, ivec2(origin_fraction >> 20)), coordinate), mat2(0.0));
 #endif
-  place += displacement / pixel_step * height * normalize(corner_normal);
+  place += displacement / pixel_step * (height - 0.5) * normalize(corner_normal);
 #endif
   vec2 pixel = vec2(dot(right.xyz, place), dot(down.xyz, place)) + middle;
   // A displaced surface may leave the ball by half its radius.
