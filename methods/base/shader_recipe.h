@@ -94,6 +94,8 @@ struct ShaderRecipe {
   double turns = 0;
   bool gradients = false;
   bool in_space = false;
+  /// Values exist at whole points of the plane alone: rasters of whole corners, step 1 and a sample a pixel.
+  bool on_grid = false;
   /// What a model lives on, if it does, seen from `tilt` radians above the plane of x and y (surface_view.h).
   std::shared_ptr<const TriangleMesh> mesh{};
   double tilt = 0;
