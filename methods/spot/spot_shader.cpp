@@ -18,7 +18,6 @@ constexpr std::int64_t pixel_units = 1024;  // of PlanePoint, a pixel
 constexpr double furthest_grid_place = 0x1p40;
 constexpr std::int64_t widest_spot_cell = pixel_units << 18;
 constexpr int widest_spot = 1 << 16;
-constexpr int most_spot_channels = 8;
 
 void require_spot_limits(const SpotKernels& kernels, const SpotNoiseOptions& options, double intensity,
                          const ShaderRequest& request) {
@@ -35,11 +34,6 @@ void require_spot_limits(const SpotKernels& kernels, const SpotNoiseOptions& opt
   if (request.filter != ShaderFilter::none) {
     throw std::invalid_argument(
         "filtered kernels of spot noise: it has values at whole points of the plane alone; expected filter none");
-  }
-  const int channels = request.channels > 0 ? std::min(request.channels, kernels.channels()) : kernels.channels();
-  if (channels > most_spot_channels) {
-    throw std::invalid_argument(
-        fmt::format("shader for spot noise of {} channels: expected at most {}", channels, most_spot_channels));
   }
   if (std::max(kernels.extent().width, kernels.extent().height) > widest_spot) {
     throw std::invalid_argument(fmt::format("shader for spot noise with kernels of {}x{}: expected at most 2^16 pixels",

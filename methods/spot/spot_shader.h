@@ -14,8 +14,8 @@ namespace textonbench {
 /// Its base is a whole point, and frames show whole points alone (on_grid).
 ///
 /// Throws std::invalid_argument for the Gaussian limit, Poisson impacts from dense_intensity on, which are drawn pixel
-/// by pixel, more than 8 channels, a filter, a place beyond 2^40 pixels from the origin, cells of more than 2^18
-/// pixels, and kernels of more than 2^16 pixels a side.
+/// by pixel, a filter, a place beyond 2^40 pixels from the origin, cells of more than 2^18 pixels, and kernels of more
+/// than 2^16 pixels a side.
 ShaderRecipe spot_noise_recipe(const SpotKernels& kernels, const std::vector<double>& mean, std::int64_t support_pixels,
                                const SpotNoiseOptions& options, const ShaderRequest& request);
 

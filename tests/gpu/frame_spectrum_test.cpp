@@ -40,7 +40,7 @@ Spectrum expected_periodogram(const Gaussian& law) {
 /// leave 7 standard errors with probability below 1e-9 each (their skewness included), so a false alarm at one of the
 /// 176 frequencies has probability below 1e-6 / 2.
 void expect_periodogram(Context& context, const ShaderRecipe& recipe, double mean, const Spectrum& expected) {
-  Renderer renderer(context, recipe, ShaderPath::fragment);
+  Renderer renderer(context, recipe, context.info().compute() ? ShaderPath::compute : ShaderPath::fragment);
   const int bins = size.width / 2 + 1;
   std::vector<double> sums(static_cast<std::size_t>(bins * size.height));
   std::vector<double> squares(sums.size());

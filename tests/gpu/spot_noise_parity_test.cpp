@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <tuple>
+#include <vector>
 
 #include "methods/spot/dsn.h"
 #include "methods/spot/spot_noise.h"
@@ -66,11 +67,11 @@ TEST_P(SpotNoiseParity, ImpactsAreThoseOfTheProcessorBitForBit) {
       texton.kernels[static_cast<std::size_t>(k)].at(0, 0, 0) = std::exp2f(5.0F * static_cast<float>(k));
     texton.mean = {0};
     for (const Impacts impacts : {Impacts::poisson, Impacts::stratified}) {
-      for (const double intensity : {0.035, 0.1, 0.55, 3.9}) {
+      for (const double intensity : kernels == 1 ? std::vector{0.035, 0.1, 0.55, 3.9} : std::vector{0.1, 0.55}) {
         for (const Eigen::Vector2d& place : places) {
-          for (const std::uint64_t seed : {1U, 2U, 3U}) {
+          for (const std::uint64_t seed : {1U, 2U}) {
             const double unit = std::sqrt(kernels / intensity);
-            EXPECT_LE(difference(texton, {.impacts = impacts, .mni = intensity, .route = SpotRoute::direct}, {150, 120},
+            EXPECT_LE(difference(texton, {.impacts = impacts, .mni = intensity, .route = SpotRoute::direct}, {110, 90},
                                  place, {.seed = Seed{seed}}, {unit}),
                       0.02)
                 << kernels << " kernels, " << static_cast<int>(impacts) << " of " << intensity << " near "
@@ -103,7 +104,8 @@ TEST_P(SpotNoiseParity, TheSpotOfAnExemplar) {
   Exemplar exemplar{"noise", Image({128, 96}, 3), std::string(64, '0')};
   for (int c = 0; c < 3; ++c) {
     for (int y = 0; y < 96; ++y)
-      fill_normal(Stream(Seed{4}), static_cast<std::uint64_t>(y + 96 * c), 0, exemplar.pixels.row(c, y));
+      fill_normal(Stream(Seed{4}), static_cast<std::uint64_t>(c) * 96 + static_cast<std::uint64_t>(y), 0,
+                  exemplar.pixels.row(c, y));
   }
   const MethodEntry& entry = find_method("dsn");
   for (const char* impacts : {"poisson", "stratified"}) {
