@@ -110,7 +110,6 @@ class SpotNoise final : public Model, public Gaussian {
   const Convergence* convergence() const override { return convergence_ ? &*convergence_ : nullptr; }
   const SpotNoiseOptions& options() const { return options_; }
   std::optional<ShaderRecipe> shader(const ShaderRequest& request) const override {
-    if (options_.impacts == Impacts::gaussian) return std::nullopt;
     return spot_noise_recipe(kernels_, texton_.mean, texton_.support_pixels, options_, request);
   }
 

@@ -24,7 +24,7 @@ TEST(SpotShader, RefusesWhatAShaderCannotDo) {
   expect_refusal(texton, {.mni = 5}, {.filter = ShaderFilter::trilinear}, "expected filter none");
   expect_refusal(texton, {.mni = 5}, {.near = {0x1p41, 0}}, "within 2^40");
   expect_refusal(texton, {.impacts = Impacts::stratified, .mni = 1e-10}, {}, "at most 2^18");
-  EXPECT_FALSE(make_spot_noise(texton, {.impacts = Impacts::gaussian})->shader({}).has_value());
+  expect_refusal(texton, {.impacts = Impacts::gaussian}, {}, "expected impacts = poisson or stratified");
 }
 
 TEST(SpotShader, FetchesAreTheImpactsThatCoverAPixel) {
