@@ -43,6 +43,19 @@ std::pair<std::int32_t, std::uint32_t> fixed_point(double pixels) {
   return {static_cast<std::int32_t>(coarse), static_cast<std::uint32_t>((pixels * 1024 - coarse) * 0x1p32)};
 }
 
+void require_grid(const Frame& frame) {
+  const Eigen::Vector2d whole = frame.origin.array().round();
+  if (frame.ground || frame.surface || frame.supersampling != 1 || frame.step != 1 || frame.origin != whole) {
+    throw std::invalid_argument(fmt::format(
+        "frame from ({}, {}) of step {} and {} x {} samples a pixel{}: this noise has values at whole points of the "
+        "plane alone; expected a raster of the plane from a whole point, of step 1 and one sample a pixel",
+        frame.origin.x(), frame.origin.y(), frame.step, frame.supersampling, frame.supersampling,
+        frame.ground    ? " of the ground"
+        : frame.surface ? " of a surface"
+                        : ""));
+  }
+}
+
 void require_reach(const Eigen::Vector2d& corner) {
   if (!(corner.cwiseAbs().maxCoeff() < furthest_from_base)) {
     throw std::invalid_argument(
@@ -82,6 +95,7 @@ Renderer::Renderer(Context& context, const ShaderRecipe& recipe, ShaderPath path
       channels_(recipe.channels),
       turns_(std::max(recipe.turns, turns_a_fetch * recipe.useful_fetches)),
       base_(recipe.base),
+      on_grid_(recipe.on_grid),
       shader_(recipe.shader) {
   if (recipe.channels < 1 || recipe.channels > 8) {
     throw std::invalid_argument(fmt::format("recipe of {} channels: expected 1 to 8", recipe.channels));
@@ -132,6 +146,7 @@ Frame Renderer::prepare(const Frame& asked) {
     throw std::invalid_argument(fmt::format("frame of step {}: expected a finite one above 0", frame.step));
   }
   const int samples_a_pass = frame.surface ? 1 : frame.supersampling;
+  if (on_grid_) require_grid(frame);
   if (context_.info().software && turns_ * samples_a_pass > most_software_turns) {
     throw GpuError(fmt::format(
         "{} turns of loops for {} samples of a pixel in a pass: {} ends loops after {}; take fewer impacts, or the "

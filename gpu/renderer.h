@@ -46,8 +46,8 @@ class Renderer {
   /// In a pass for each row of a pixel's samples, of a surface for each sample, so that no shader runs for long. Throws
   /// GpuError for a frame beyond the driver's limits or memory, for a uniform or sampler that the shader reads and the
   /// recipe does not set, for a context that was lost and, in software, for more impacts than its loops count;
-  /// std::invalid_argument for a frame that is empty or farther than 2^20 pixels from the recipe's base, and one of a
-  /// surface where there is none.
+  /// std::invalid_argument for a frame that is empty or farther than 2^20 pixels from the recipe's base, one of a
+  /// surface where there is none, and one that is no raster of whole points of a recipe that has no others.
   Image draw(const Frame& frame);
 
   /// Milliseconds of the graphics processor for each of `count` frames, by timer queries, after `warm_up` others.
@@ -67,6 +67,7 @@ class Renderer {
   double turns_;
   std::optional<SurfaceView> view_;  ///< of frames that say nothing, by a recipe with a mesh
   Eigen::Vector2d base_;
+  bool on_grid_;
   std::string shader_;
   std::unique_ptr<Resources> resources_;
 };

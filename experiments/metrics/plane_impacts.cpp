@@ -26,7 +26,7 @@ struct CellWork {
 
 std::optional<CellWork> work_at_points(const Model& model, const Target& target) {
   const SplineNoiseOptions* noise = spline_noise_of(model);
-  if (noise == nullptr || noise->kernel_at) return std::nullopt;
+  if (noise == nullptr || noise->share) return std::nullopt;
   constexpr int points = 4096;
   const SplineTexton& texton = *model.spline_texton();
   const Extent extent = texton.coefficients.extent();

@@ -43,7 +43,7 @@ std::optional<KurtosisRange> local_kurtosis(const Model& model, const Domain& do
 
 /// Mean over the channels.
 std::optional<double> spline_noise_kurtosis(const Model& model, const SplineNoiseOptions& noise) {
-  if (noise.impacts == ImpactProcess::paper || noise.kernel_at) return std::nullopt;
+  if (noise.impacts == ImpactProcess::paper || noise.share) return std::nullopt;
   const SplineTexton& texton = *model.spline_texton();
   const bool stratified = noise.impacts == ImpactProcess::stratified;
   double sum = 0;

@@ -1,6 +1,7 @@
 // The impacts of methods/base/impact_grid.h, bit for bit, of any number of grids. PROCESS is one of the numbers below and
 // KERNELS the number of kernels, those of all grids.
 #include "philox.glsl"
+#include "plane_impact.glsl"
 
 #define POISSON 0
 #define SIGNED_POISSON 1
@@ -26,12 +27,6 @@ struct ImpactGrid {
 // As it is drawn: x and y in 2^−24 cell sides.
 struct CellImpact {
   uvec2 place;
-  int kernel;
-  float weight;
-};
-
-struct PlaneImpact {
-  PlanePoint place;
   int kernel;
   float weight;
 };
@@ -149,24 +144,17 @@ CellImpact next_impact(ImpactGrid grid, inout CellWords open, uint i) {
   return CellImpact(words >> 8, int((fraction * uint(KERNELS)) >> 16), weight);
 }
 
-// Rounded down to 2^−22 pixel.
+// Rounded down to 2^−22 pixel. With SHARE, its kernel is that of its place.
 PlaneImpact impact_on_plane(ImpactGrid grid, ivec2 cell, CellImpact impact) {
   uvec2 high, low;
   umulExtended(impact.place, uvec2(grid.side), high, low);
   ivec2 corner = grid.corner + cell * grid.side;
   PlanePoint place = PlanePoint(corner + ivec2(high << 8 | low >> 24), ivec2(low >> 12) & 4095);
+#ifdef SHARE
+  impact.kernel = kernel_of_place(place);
+#endif
   return PlaneImpact(place, impact.kernel, impact.weight);
 }
 
 // Cells that hold the points of a box.
-struct CellRange {
-  ivec2 low;
-  ivec2 high;
-};
-
-CellRange cells_of(ImpactGrid grid, PlaneBox box) {
-  ivec2 low = box.low - grid.corner;
-  ivec2 high = box.high - grid.corner;
-  return CellRange(ivec2(floor_division(low.x, grid.side), floor_division(low.y, grid.side)),
-                   ivec2(floor_division(high.x, grid.side), floor_division(high.y, grid.side)));
-}
+CellRange cells_of(ImpactGrid grid, PlaneBox box) { return cells_in(box, grid.corner, grid.side); }

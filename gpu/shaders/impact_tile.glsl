@@ -8,6 +8,9 @@ shared uint tile_ends[group_size];       // impacts of the cells up to each one
 shared uint tile_kept[group_size / 32u]; // a bit a thread
 shared ivec4 tile_impacts[list_size];
 shared ivec2 tile_margin;
+#ifdef CELL_STARTS
+shared uint tile_starts[group_size];     // of each cell, the number of its impacts' first word
+#endif
 
 // Largest margin of the group.
 ivec2 margin_of_group(ivec2 margin) {
@@ -64,6 +67,9 @@ PlaneImpact numbered_impact(ImpactGrid grid, CellRange range, uint first, uint c
 #endif
   ivec2 cell = cell_of_range(range, first + low);
   CellWords open = open_cell(grid, cell);
+#ifdef CELL_STARTS
+  open.next = tile_starts[low];
+#endif
   skip_to_impact(grid, open, number - start);
   return impact_on_plane(grid, cell, next_impact(grid, open, number - start));
 }
@@ -114,7 +120,11 @@ uint add_cells(ImpactGrid grid, CellRange range, PlaneBox box, PlanePoint point,
 #else
     uint count = 0u;
     if (gl_LocalInvocationIndex < cells) {
-      count = impact_count(grid, open_cell(grid, cell_of_range(range, first + gl_LocalInvocationIndex)));
+      CellWords open = open_cell(grid, cell_of_range(range, first + gl_LocalInvocationIndex));
+      count = impact_count(grid, open);
+#ifdef CELL_STARTS
+      tile_starts[gl_LocalInvocationIndex] = open.next;
+#endif
     }
     uint total = sum_counts(count, cells);
 #endif

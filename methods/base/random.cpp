@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "methods/base/poisson_rejection.h"
 #include "methods/base/portable_math.h"
 
 namespace textonbench {
@@ -26,45 +27,6 @@ std::uint64_t hash(std::string_view name) {
     h = (h ^ static_cast<unsigned char>(c)) * 0x100000001B3ULL;
   }
   return h;
-}
-
-/// log(n!) − [log sqrt(2πn) + n log n − n] for n > 15: Stirling's series, error below 1e-15.
-double stirling_error(double n) {
-  const double n2 = n * n;
-  return (1.0 / 12 - (1.0 / 360 - (1.0 / 1260 - (1.0 / 1680 - 1.0 / 1188 / n2) / n2) / n2) / n2) / n;
-}
-
-/// k log(k / mean) + mean − k without cancellation (Loader 2000).
-double deviance(double k, double mean) {
-  const double difference = k - mean;
-  if (std::fabs(difference) >= 0.1 * (k + mean)) {
-    return k * portable::log(k / mean) - difference;
-  }
-  const double v = difference / (k + mean);
-  double sum = difference * v;
-  double power = 2 * k * v;
-  for (int j = 1; j < 1000; ++j) {
-    power *= v * v;
-    const double next = sum + power / (2 * j + 1);
-    if (next == sum) {
-      break;
-    }
-    sum = next;
-  }
-  return sum;
-}
-
-/// Logarithm of the Poisson probability of k.
-double log_poisson(double k, double mean) {
-  constexpr double half_log_two_pi = 0.91893853320467274178;
-  if (k <= 15) {
-    double factorial = 1;
-    for (int i = 2; i <= static_cast<int>(k); ++i) {
-      factorial *= i;
-    }
-    return k * portable::log(mean) - mean - portable::log(factorial);
-  }
-  return -stirling_error(k) - deviance(k, mean) - half_log_two_pi - 0.5 * portable::log(k);
 }
 
 }  // namespace
@@ -138,7 +100,7 @@ std::int64_t RandomSequence::poisson(double mean) {
   if (!(mean >= 0 && mean <= 1e15)) {
     throw std::invalid_argument(fmt::format("Poisson mean {}: expected a number in [0, 1e15]", mean));
   }
-  if (mean < 10) {
+  if (mean < least_rejection_mean) {
     // Count the arrivals of a unit-rate process before time `mean`.
     std::int64_t count = -1;
     for (double time = 0; time <= mean; ++count) {
@@ -147,10 +109,7 @@ std::int64_t RandomSequence::poisson(double mean) {
     return count;
   }
   // Transformed rejection with squeeze, PTRS (Hörmann 1993).
-  const double b = 0.931 + 2.53 * std::sqrt(mean);
-  const double a = -0.059 + 0.02483 * b;
-  const double inverse_alpha = 1.1239 + 1.1328 / (b - 3.4);
-  const double v_r = 0.9277 - 3.6224 / (b - 2);
+  const auto [a, b, inverse_alpha, v_r] = poisson_rejection(mean);
   for (;;) {
     const double u = uniform() - 0.5;
     const double v = uniform();

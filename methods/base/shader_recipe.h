@@ -96,6 +96,8 @@ struct ShaderRecipe {
   /// What frames show: the values (−1), or their derivatives by x (0) or y (1).
   int derivative = -1;
   bool in_space = false;
+  /// Values exist at whole points of the plane alone: rasters of whole corners, step 1 and a sample a pixel.
+  bool on_grid = false;
   /// What a model lives on, if it does, seen from `tilt` radians above the plane of x and y (surface_view.h).
   std::shared_ptr<const TriangleMesh> mesh{};
   double tilt = 0;

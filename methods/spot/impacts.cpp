@@ -42,11 +42,10 @@ std::vector<ImpactStrip> draw_rows(const Stream& stream, std::int64_t first, std
   return strips;
 }
 
-/// Cells of 2^shift pixels squared hold 8 to 32 impacts, which spreads the cost of a cell's stream, and are at most
-/// 2^15 wide, so that the two halves of a random word make a position.
 ImpactSet draw_sparse_poisson(const Stream& stream, double intensity, int kernels, const PlaneWindow& window) {
-  const int shift = std::clamp(static_cast<int>(std::floor(0.5 * std::log2(32 / intensity))), 1, 15);
-  const double mean = intensity * static_cast<double>(std::int64_t{1} << (2 * shift));
+  const PoissonCells cells = poisson_cells(intensity);
+  const int shift = cells.shift;
+  const double mean = cells.mean;
   const std::uint32_t mask = (1U << static_cast<unsigned>(shift)) - 1;
   const auto draw = [&](std::int64_t cy, const Stream& row) {
     ImpactStrip strip = strip_of(window, cy << shift, (cy + 1) << shift);
@@ -115,6 +114,11 @@ std::int64_t ImpactSet::size() const {
 ImpactSet draw_poisson(const Stream& stream, double intensity, int kernels, const PlaneWindow& window) {
   return intensity < dense_intensity ? draw_sparse_poisson(stream, intensity, kernels, window)
                                      : draw_dense_poisson(stream, intensity, kernels, window);
+}
+
+PoissonCells poisson_cells(double intensity) {
+  const int shift = std::clamp(static_cast<int>(std::floor(0.5 * std::log2(32 / intensity))), 1, 15);
+  return {shift, intensity * static_cast<double>(std::int64_t{1} << (2 * shift))};
 }
 
 CellLattice plane_lattice(double intensity) {

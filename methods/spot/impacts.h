@@ -48,6 +48,15 @@ constexpr double dense_intensity = 4;
 /// sum of its weights (below dense_intensity impacts of weight 1; above, one of the number minus its mean).
 ImpactSet draw_poisson(const Stream& stream, double intensity, int kernels, const PlaneWindow& window);
 
+/// Square cells of 2^shift pixels a side, the first from 0 on, in which Poisson impacts below dense_intensity are
+/// drawn, `mean` in each on average. They hold 8 to 32 impacts, which spreads the cost of a cell's stream, and are at
+/// most 2^15 wide, so that the two halves of a random word make a position.
+struct PoissonCells {
+  int shift = 1;
+  double mean = 0;
+};
+PoissonCells poisson_cells(double intensity);
+
 /// Cells of side numerator / denominator along one axis, the first from 0 on.
 struct CellAxis {
   std::int64_t numerator = 1;

@@ -10,6 +10,8 @@
 #include "methods/base/image_io.h"
 #include "methods/base/parallel.h"
 #include "methods/spot/barycenter.h"
+#include "methods/spot/plane_share.h"
+#include "methods/spot/share_shader.h"
 #include "methods/spot/texton_noise.h"
 
 namespace textonbench {
@@ -38,7 +40,13 @@ std::vector<ParamSpec> make_mixing_params() {
        .default_value = std::string(),
        .unit = "file",
        .help = "instead of start and length: a picture whose first channel is the share of the "
-               "second texture at each pixel, 0 to 1; it goes on beyond its borders"}};
+               "second texture at each pixel, 0 to 1; it goes on beyond its borders"},
+      {.name = "share",
+       .default_value = -1.0,
+       .unit = "",
+       .help = "instead of start and length: the share of the second texture everywhere, 0 to 1; -1: as they say",
+       .min = -1,
+       .max = 1}};
   std::ranges::copy(support_params(31), std::back_inserter(all));
   all.push_back(spline_order_param());
   std::ranges::copy(projection_params(), std::back_inserter(all));
@@ -70,42 +78,35 @@ SotOptions fit_options(const Params& params) {
   return options;
 }
 
-/// The share ρ of the second texture at every point of the plane.
-class Share {
- public:
-  explicit Share(const Params& params) : start_(params.number("start")), length_(params.number("length")) {
-    if (const std::string& file = params.text("map"); !file.empty()) {
-      map_ = read_image(file).image;
-      for (int y = 0; y < map_.height(); ++y) {
-        for (int x = 0; x < map_.width(); ++x) {
-          if (const float value = map_.at(0, x, y); !(value >= 0 && value <= 1)) {
-            throw std::invalid_argument(
-                fmt::format("{}: the share {} at ({}, {}); expected 0 to 1", file, value, x, y));
-          }
-        }
-      }
+PlaneShare share_of(const Params& params) {
+  const std::string& file = params.text("map");
+  const double share = params.number("share");
+  if (share >= 0) {
+    if (!file.empty()) {
+      throw std::invalid_argument(fmt::format(
+          "share = {} and map = {}: expected one of them, the same share everywhere or a picture of it", share, file));
     }
+    return PlaneShare::uniform(share);
   }
-
-  double at(double x, double y) const {
-    if (map_.empty()) {
-      return std::clamp((x - start_) / length_, 0.0, 1.0);
-    }
-    const auto pixel = [](double coordinate, int size) {
-      return static_cast<int>(std::clamp(std::floor(coordinate + 0.5), 0.0, size - 1.0));
-    };
-    return map_.at(0, pixel(x, map_.width()), pixel(y, map_.height()));
+  if (share != -1) {
+    throw std::invalid_argument(
+        fmt::format("share = {}: expected 0 to 1, or -1 for that of start and length, or of a map", share));
   }
-
- private:
-  double start_, length_;
-  Image map_;
-};
+  if (file.empty()) {
+    return PlaneShare::ramp(params.number("start"), params.number("length"));
+  }
+  Image picture = read_image(file).image;
+  try {
+    return PlaneShare::map(std::move(picture));
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
+  }
+}
 
 class Mixture final : public Model {
  public:
   /// `noise` has mean zero.
-  Mixture(std::unique_ptr<Model> noise, Share share, std::vector<double> first, std::vector<double> second)
+  Mixture(std::unique_ptr<Model> noise, PlaneShare share, std::vector<double> first, std::vector<double> second)
       : noise_(std::move(noise)), share_(std::move(share)), first_(std::move(first)), second_(std::move(second)) {}
 
   Image synthesize(const Domain& domain, Seed seed) const override {
@@ -124,9 +125,17 @@ class Mixture final : public Model {
 
   Footprint footprint(const Domain& domain) const override { return noise_->footprint(domain); }
 
+  std::optional<ShaderRecipe> shader(const ShaderRequest& request) const override {
+    std::optional<ShaderRecipe> recipe = noise_->shader(request);
+    if (recipe) {
+      add_means_to(*recipe, first_, second_);
+    }
+    return recipe;
+  }
+
  private:
   std::unique_ptr<Model> noise_;
-  Share share_;
+  PlaneShare share_;
   std::vector<double> first_, second_;
 };
 
@@ -172,11 +181,9 @@ std::unique_ptr<Model> fit_mixing(const Problem& problem, const Params& params, 
         std::move(fit_sot(between, support, fit, seed).texton.kernels.front());
   });
 
-  const Share share(params);
+  const PlaneShare share = share_of(params);
   SplineNoiseOptions noise = spline_noise_options(params);
-  noise.kernel_at = [share, kernels](double x, double y) {
-    return static_cast<int>(std::lround(share.at(x, y) * (kernels - 1)));
-  };
+  noise.share = share;
   return std::make_unique<Mixture>(make_spline_noise(std::move(texton), noise), share, first.mean, second.mean);
 }
 

@@ -116,7 +116,7 @@ class SplineNoise final : public Model, public Gaussian, public Procedural {
   }
 
   const SplineNoiseOptions& options() const { return options_; }
-  const Gaussian* gaussian() const override { return options_.kernel_at ? nullptr : this; }
+  const Gaussian* gaussian() const override { return options_.share ? nullptr : this; }
   const Procedural* procedural() const override { return this; }
   const SplineTexton* spline_texton() const override { return &texton_; }
   std::optional<ShaderRecipe> shader(const ShaderRequest& request) const override {
@@ -261,16 +261,14 @@ ImpactGrid spline_noise_impacts(const SplineTexton& texton, const SplineNoiseOpt
   const double cell = options.cell > 0 ? options.cell : fallback;
   ImpactGrid grid(options.impacts, options.mni / texton.support_area, cell * std::sqrt(texton.support_area),
                   static_cast<int>(texton.coefficients.kernels.size()));
-  if (options.kernel_at) {
+  if (options.share) {
     if (grid.mean_weight() != 0) {
       throw std::invalid_argument("kernels chosen by place: expected impacts of random sign");
     }
     const Extent box = texton.coefficients.extent();
-    grid.choose_kernels([kernel_at = options.kernel_at, box](std::int64_t x, std::int64_t y) {
-      const auto center = [](std::int64_t corner, int size) {
-        return static_cast<double>(corner) / static_cast<double>(plane_unit) + (size - 1) / 2.0;
-      };
-      return kernel_at(center(x, box.width), center(y, box.height));
+    const auto kernels = static_cast<int>(texton.coefficients.kernels.size());
+    grid.choose_kernels([share = *options.share, box, kernels](std::int64_t x, std::int64_t y) {
+      return kernel_with_corner(share, x, y, box, kernels);
     });
   }
   return grid;

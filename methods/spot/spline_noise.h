@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +13,7 @@
 #include "methods/base/impact_grid.h"
 #include "methods/base/texton.h"
 #include "methods/method.h"
+#include "methods/spot/plane_share.h"
 
 namespace textonbench {
 
@@ -30,9 +30,10 @@ struct SplineNoiseOptions {
   double cell = 0;  ///< side of the Poisson process' cells in sides of the support; 0: the measured optimum (0.6 in the
                     ///< paper's process)
   SplineRoute route = SplineRoute::automatic;
-  /// Number of the kernel that an impact takes whose kernel is centered at that point, in pixels, in place of one by
-  /// chance. Its impacts are signed, h_k is not scaled by sqrt(K), and the noise has no spectrum of its own.
-  std::function<int(double x, double y)> kernel_at = {};
+  /// Where kernels are chosen by place: an impact takes the kernel of the share at its kernel's center (plane_share.h)
+  /// in place of one by chance. Its impacts are signed, h_k is not scaled by sqrt(K), and the noise has no spectrum of
+  /// its own.
+  std::optional<PlaneShare> share = std::nullopt;
 };
 
 /// Throws std::invalid_argument for coefficients of different sizes or not finite, an order out of range, or options

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "methods/spot/kernel_texture.h"
+#include "methods/spot/share_shader.h"
 #include "methods/spot/spline_scale.h"
 
 namespace textonbench {
@@ -18,12 +19,7 @@ constexpr double greatest_cell = 0x1p18;
 constexpr int greatest_kernel = 1 << 16;
 constexpr double most_cells_aside = 0x1p13;
 
-void require_shader_limits(const SplineTexton& texton, const SplineNoiseOptions& options, const ShaderRequest& request,
-                           const ImpactGrid& grid) {
-  if (options.kernel_at) {
-    throw std::invalid_argument(
-        "kernels of texton noise chosen by place: a shader draws them by chance, and has no function of the place");
-  }
+void require_shader_limits(const SplineTexton& texton, const ShaderRequest& request, const ImpactGrid& grid) {
   require_shader_kernels(texton, request);
   if (!(request.near.cwiseAbs().maxCoeff() <= furthest_place)) {
     throw std::invalid_argument(
@@ -75,7 +71,7 @@ ShaderRecipe spline_noise_recipe(const SplineTexton& texton, const SplineNoiseOp
     return spline_noise_recipe(first_channels(texton, request.channels), options, of_part);
   }
   const ImpactGrid grid = spline_noise_impacts(texton, options);
-  require_shader_limits(texton, options, request, grid);
+  require_shader_limits(texton, request, grid);
   const double scale = spline_noise_scale(texton, options, grid);
   const Texton& coefficients = texton.coefficients;
   ShaderRecipe recipe;
@@ -84,6 +80,9 @@ ShaderRecipe spline_noise_recipe(const SplineTexton& texton, const SplineNoiseOp
   add_impacts_to(recipe, grid, request);
   recipe.uniforms.emplace_back("start", spline_noise_start(texton, scale, grid));
   add_kernels_to(recipe, texton, scale, request);
+  if (options.share) {
+    add_share_to(recipe, *options.share, coefficients.extent(), static_cast<int>(coefficients.kernels.size()));
+  }
   recipe.useful_fetches = grid.intensity() * texton.support_area * fetches_an_impact(texton, request);
   return recipe;
 }

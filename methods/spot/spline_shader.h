@@ -15,9 +15,9 @@ namespace textonbench {
 ///
 /// Its base is a corner of the cell that holds request.near, and useful_fetches count one of a filter as one.
 ///
-/// Throws std::invalid_argument, besides where make_spline_noise does, for kernels chosen by place, more than 8
-/// channels, hardware fetches of orders 2, 4 and 5, a filter of another order than 1, a place beyond 2^40 pixels from
-/// the origin, cells of more than 2^18 pixels, and kernels of more than 2^16 pixels or 2^13 cells a side.
+/// Throws std::invalid_argument, besides where make_spline_noise does, for more than 8 channels, hardware fetches of
+/// orders 2, 4 and 5, a filter of another order than 1, a place beyond 2^40 pixels from the origin, cells of more than
+/// 2^18 pixels, and kernels of more than 2^16 pixels or 2^13 cells a side.
 ShaderRecipe spline_noise_recipe(const SplineTexton& texton, const SplineNoiseOptions& options,
                                  const ShaderRequest& request);
 

@@ -9,6 +9,7 @@
 #include "methods/base/convolution.h"
 #include "methods/base/parallel.h"
 #include "methods/exemplar_spot.h"
+#include "methods/spot/spot_shader.h"
 #include "methods/spot/spot_sum.h"
 
 namespace textonbench {
@@ -108,6 +109,9 @@ class SpotNoise final : public Model, public Gaussian {
   const Texton* texton() const override { return &texton_; }
   const Convergence* convergence() const override { return convergence_ ? &*convergence_ : nullptr; }
   const SpotNoiseOptions& options() const { return options_; }
+  std::optional<ShaderRecipe> shader(const ShaderRequest& request) const override {
+    return spot_noise_recipe(kernels_, texton_.mean, texton_.support_pixels, options_, request);
+  }
 
   Footprint footprint(const Domain& domain) const override {
     std::size_t bytes = 0;

@@ -90,6 +90,22 @@ TEST_F(FpsTest, AllPathsAreRowsAndSoftwareIsCalledSo) {
   EXPECT_EQ(outcome.err.find("no graphics processor's frame rate") != std::string::npos, info_.software);
 }
 
+TEST_F(FpsTest, MixturesAndSpotNoisesAreTimed) {
+  const std::vector<std::string> frames{"--size", "32x32", "--frames", "1", "--path", "fragment", "--json"};
+  std::vector<std::string> mixing = fps(frames);
+  mixing[1] = "mixing";
+  mixing.insert(mixing.end(), {"-p", "second=white_noise", "-p", "kernels=3", "-p", "share=0.5"});
+  std::vector<std::string> dsn{"fps", "dsn", "white_noise", "-p", "mni=4"};
+  dsn.insert(dsn.end(), frames.begin(), frames.end());
+  for (const auto& [arguments, impacts] : {std::pair{mixing, 5.0}, std::pair{dsn, 4.0}}) {
+    const Outcome outcome = run(arguments);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const nlohmann::json json = nlohmann::json::parse(outcome.out);
+    EXPECT_GT(json["ms"]["median"], 0);
+    EXPECT_NEAR(json["fetches_per_pixel"], impacts, 0.01);
+  }
+}
+
 TEST_F(FpsTest, SynthDrawsTheSampleOfTheProcessor) {
   std::vector<std::string> synth = fps({"--size", "40x24", "--seed", "7", "--json", "-o", "cpu.exr"});
   synth.front() = "synth";
@@ -111,7 +127,10 @@ TEST_F(FpsTest, SynthDrawsTheSampleOfTheProcessor) {
 
 TEST_F(FpsTest, WhatTheRendererCannotDoIsTold) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
-      {{"fps", "adsn", "white_noise"}, "adsn has no shader for a graphics processor: expected one of texton_noise"},
+      {{"fps", "adsn", "white_noise"},
+       "adsn has no shader for a graphics processor: expected one of dsn, texton_noise"},
+      {{"fps", "dsn", "white_noise", "-p", "impacts=gaussian"}, "expected impacts = poisson or stratified"},
+      {{"fps", "dsn", "white_noise", "--ground"}, "whole points of the plane alone"},
       {fps({"--size", "100000x2"}), "frame of 100000x2 pixels"},
       {fps({"--pitch", "20"}), "--pitch on the scene plane: expected --scene ground"},
       {fps({"--tilt", "20", "--scene", "ground"}), "--tilt on the scene ground: expected --scene sphere"},

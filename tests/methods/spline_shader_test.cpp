@@ -129,9 +129,6 @@ void expect_refusal(const SplineTexton& texton, const SplineNoiseOptions& option
 
 TEST(SplineShader, RefusesWhatAShaderCannotDo) {
   const SplineNoiseOptions stratified{.impacts = ImpactProcess::stratified, .mni = 5};
-  SplineNoiseOptions by_place = stratified;
-  by_place.kernel_at = [](double, double) { return 0; };
-  expect_refusal(spline_texton(1, 1, 1), by_place, {}, "chosen by place");
   for (const int order : {2, 4, 5}) {
     expect_refusal(spline_texton(order, 1, 1), stratified, {}, "manual fetches");
   }
