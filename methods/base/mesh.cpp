@@ -21,6 +21,7 @@ using Eigen::Vector3d;
 struct OpenMesh {
   TriangleMesh mesh;
   std::vector<bool> has_normal;
+  std::vector<std::size_t> position;  ///< of each vertex, its number in the file
   bool has_coordinates = true;
 };
 
@@ -75,6 +76,7 @@ class MeshBuilder {
     made_.push_back({corner.normal_index, corner.texcoord_index, latest});
     latest = index;
     open_.mesh.vertices.push_back(position);
+    open_.position.push_back(static_cast<std::size_t>(corner.vertex_index));
     Vector3d normal = Vector3d::Zero();
     if (corner.normal_index >= 0) {
       normal = vector_at(attributes_.normals, corner.normal_index, "normal", file_).normalized();
@@ -117,30 +119,32 @@ class MeshBuilder {
 
 double angle_between(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-void fill_normals(OpenMesh& open, const std::filesystem::path& file) {
-  std::vector<Vector3d> sums(open.mesh.vertices.size(), Vector3d::Zero());
+/// A position on a seam of the coordinates is several vertices, which get one normal.
+void fill_normals(OpenMesh& open, std::size_t positions, const std::filesystem::path& file) {
+  std::vector<Vector3d> sums(positions, Vector3d::Zero());
   std::vector<bool> used(open.mesh.vertices.size(), false);
   for (const auto& triangle : open.mesh.triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto here = static_cast<std::size_t>(triangle[i]);
       const Vector3d a = open.mesh.vertices[static_cast<std::size_t>(triangle[(i + 1) % 3])] - open.mesh.vertices[here];
       const Vector3d b = open.mesh.vertices[static_cast<std::size_t>(triangle[(i + 2) % 3])] - open.mesh.vertices[here];
-      sums[here] += angle_between(a, b) * a.cross(b).normalized();
+      sums[open.position[here]] += angle_between(a, b) * a.cross(b).normalized();
       used[here] = true;
     }
   }
-  for (std::size_t i = 0; i < sums.size(); ++i) {
+  for (std::size_t i = 0; i < used.size(); ++i) {
     if (open.has_normal[i] || !used[i]) {
       continue;
     }
-    if (sums[i].norm() < 1e-6) {
+    const Vector3d& sum = sums[open.position[i]];
+    if (sum.norm() < 1e-6) {
       const Vector3d& at = open.mesh.vertices[i];
       throw std::invalid_argument(
           fmt::format("{}: the triangles around the vertex ({}, {}, {}) face opposite ways, so it has no normal; "
                       "expected triangles all counterclockwise from outside, or normals in the file",
                       file.string(), at.x(), at.y(), at.z()));
     }
-    open.mesh.normals[i] = sums[i].normalized();
+    open.mesh.normals[i] = sum.normalized();
   }
 }
 
@@ -195,7 +199,7 @@ TriangleMesh read_obj(const std::filesystem::path& file) {
     throw std::invalid_argument(
         fmt::format("{}: no triangle with an area; expected a mesh with at least one face", file.string()));
   }
-  fill_normals(open, file);
+  fill_normals(open, reader.GetAttrib().vertices.size() / 3, file);
   if (!open.has_coordinates) open.mesh.coordinates.clear();
   return std::move(open.mesh);
 }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <fstream>
 #include <numbers>
 #include <stdexcept>
@@ -65,6 +66,37 @@ TEST(MeshTest, NormalsOfTheFileAreKeptAndMadeUnits) {
   const TriangleMesh mesh = read_obj(obj_file(folder, "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 3 4\nf 1//1 2//1 3//1\n"));
   for (const Vector3d& normal : mesh.normals) {
     EXPECT_NEAR((normal - Vector3d(0, 0.6, 0.8)).norm(), 0, 1e-6);
+  }
+}
+
+// A tent of two squares whose ridge is a seam of the coordinates.
+TEST(MeshTest, ASeamOfCoordinatesHasOneNormal) {
+  const ScratchFolder folder;
+  const TriangleMesh mesh = read_obj(obj_file(folder,
+                                              "v -1 0 0\nv 0 0 1\nv 0 1 1\nv -1 1 0\nv 1 0 0\nv 1 1 0\n"
+                                              "vt 0 0\nvt 0.5 0\nvt 0.5 1\nvt 0 1\nvt 0.6 0\nvt 0.6 1\nvt 1 0\nvt 1 1\n"
+                                              "f 1/1 2/2 3/3 4/4\nf 2/5 5/7 6/8 3/6\n"));
+  ASSERT_EQ(mesh.vertices.size(), 8U);
+  ASSERT_EQ(mesh.coordinates.size(), 8U);
+  int on_the_ridge = 0;
+  for (std::size_t i = 0; i < 8; ++i) {
+    if (mesh.vertices[i].z() != 1) continue;
+    ++on_the_ridge;
+    EXPECT_NEAR((mesh.normals[i] - Vector3d(0, 0, 1)).norm(), 0, 1e-12);
+    // Pictures count rows downwards.
+    EXPECT_NEAR(mesh.coordinates[i].y(), -mesh.vertices[i].y(), 1e-6);
+  }
+  EXPECT_EQ(on_the_ridge, 4);
+}
+
+TEST(MeshTest, CoordinatesAreKeptWhereAllCornersHaveThem) {
+  const ScratchFolder folder;
+  EXPECT_TRUE(read_obj(obj_file(folder, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nf 1/1 2/1 3/1\nf 1 2 4\n"))
+                  .coordinates.empty());
+  const TriangleMesh sphere = sphere_mesh(8);
+  ASSERT_EQ(sphere.coordinates.size(), sphere.vertices.size());
+  for (std::size_t i = 0; i < sphere.vertices.size(); ++i) {
+    EXPECT_NEAR(std::cos(sphere.coordinates[i].y()), sphere.vertices[i].z(), 1e-12);
   }
 }
 
