@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "experiments/cli/command.h"
+#include "experiments/cli/export_glsl.h"
 
 namespace textonbench::cli {
 namespace {
@@ -16,7 +17,8 @@ struct ExportArguments {
 
 int write_export(const ExportArguments& arguments, const GlobalOptions& globals) {
   if (arguments.csv.empty() && arguments.sqlite.empty()) {
-    throw std::invalid_argument("nothing to write: expected --csv FOLDER, --sqlite FILE or both");
+    throw std::invalid_argument(
+        "nothing to write: expected --csv FOLDER, --sqlite FILE or both, or glsl METHOD EXEMPLAR");
   }
   const ReadRecords read = ResultsFolder(globals.results).read();
   for (const BadLine& bad : read.bad_lines) {
@@ -40,12 +42,14 @@ int write_export(const ExportArguments& arguments, const GlobalOptions& globals)
 
 Command export_command(CLI::App& app, const GlobalOptions& globals) {
   const auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command = app.add_subcommand("export", "Write all records as CSV tables or as one SQLite file");
+  CLI::App* command = app.add_subcommand(
+      "export", "Write all records as CSV tables or as one SQLite file, or a noise for other engines");
   command->add_option("--csv", arguments->csv, "Folder for runs.csv, metrics.csv, params.csv, pictures.csv, …");
   command->add_option("--sqlite", arguments->sqlite,
                       "File with the tables runs, metrics, params, pictures, provenance");
   set_examples(*command,
-               "  textonbench export --csv tables --sqlite results.sqlite\n\n"
+               "  textonbench export --csv tables --sqlite results.sqlite\n"
+               "  textonbench export glsl texton_noise HR_Cork -o cork\n\n"
                "Means over all runs, a line a method and metric:\n"
                "  sqlite3 results.sqlite \"SELECT method, name, avg(value) FROM metrics JOIN runs ON run = id\n"
                "    WHERE status = 'ok' GROUP BY method, name\"\n"
@@ -54,7 +58,10 @@ Command export_command(CLI::App& app, const GlobalOptions& globals) {
                "    JOIN metrics m ON m.run = id AND m.name = 'patch_distance'\n"
                "    JOIN params p ON p.run = id AND p.name = 'component' AND p.value = 'periodic'\n"
                "    WHERE method = 'rpn' GROUP BY exemplar ORDER BY worst DESC LIMIT 5\"");
-  return {command, [arguments, &globals] { return write_export(*arguments, globals); }};
+  const Command glsl = export_glsl_command(*command, globals);
+  return {command, [arguments, glsl, &globals] {
+            return glsl.app->parsed() ? glsl.action() : write_export(*arguments, globals);
+          }};
 }
 
 }  // namespace textonbench::cli

@@ -181,14 +181,15 @@ OIIO::ImageBuf to_buffer(const Image& image) {
 }
 
 /// The bytes of a PNG or EXR file.
-std::vector<unsigned char> encode(const Image& image, const std::string& extension, std::span<const ImageMap> maps) {
+std::vector<unsigned char> encode(const Image& image, const std::string& extension, std::span<const ImageMap> maps,
+                                  OIIO::TypeDesc of_png = OIIO::TypeDesc::UINT8) {
   OIIO::ImageBuf buffer = to_buffer(image);
   if (!maps.empty()) {
     buffer.specmod().channelnames = channel_names(maps);
   }
   OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT;
   if (extension == ".png") {
-    type = OIIO::TypeDesc::UINT8;
+    type = of_png;
     // Values are sample values of the exemplar's own encoding; saying so keeps OpenImageIO from converting them.
     buffer.specmod().attribute("oiio:ColorSpace", "sRGB");
     buffer.specmod().attribute("png:compressionLevel", 6);
@@ -202,6 +203,27 @@ std::vector<unsigned char> encode(const Image& image, const std::string& extensi
                                          image.height(), extension, one_line(buffer.geterror())));
   }
   return std::move(memory.buffer());
+}
+
+/// Encoded in memory, because OpenImageIO does not tell when the disk is full; written beside under a name of this
+/// process, so that a reader never sees half a picture.
+void write_bytes(const std::vector<unsigned char>& bytes, const std::filesystem::path& file) {
+  const std::filesystem::path beside =
+      file.parent_path() / fmt::format(".{}.{}{}", file.stem().string(), getpid(), file.extension().string());
+  std::ofstream stream(beside, std::ios::binary);
+  stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  stream.close();
+  std::error_code error;
+  if (stream) {
+    std::filesystem::rename(beside, file, error);
+  } else {
+    error.assign(errno != 0 ? errno : EIO, std::generic_category());
+  }
+  if (error) {
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    throw std::runtime_error(fmt::format("{}: cannot be written ({})", file.string(), error.message()));
+  }
 }
 
 void from_buffer(const OIIO::ImageBuf& buffer, Image& image) {
@@ -230,25 +252,11 @@ void write_image(const Image& image, const std::filesystem::path& file, std::spa
     reject(file, fmt::format("cannot write {} channels as maps of {}; expected as many, and .exr", image.channels(),
                              channel_names(maps).size()));
   }
-  // Encoded in memory, because OpenImageIO does not tell when the disk is full; written beside under a name of this
-  // process, so that a reader never sees half a picture.
-  const std::vector<unsigned char> bytes = encode(image, extension, maps);
-  const std::filesystem::path beside =
-      file.parent_path() / fmt::format(".{}.{}{}", file.stem().string(), getpid(), extension);
-  std::ofstream stream(beside, std::ios::binary);
-  stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  stream.close();
-  std::error_code error;
-  if (stream) {
-    std::filesystem::rename(beside, file, error);
-  } else {
-    error.assign(errno != 0 ? errno : EIO, std::generic_category());
-  }
-  if (error) {
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    throw std::runtime_error(fmt::format("{}: cannot be written ({})", file.string(), error.message()));
-  }
+  write_bytes(encode(image, extension, maps), file);
+}
+
+void write_png_16(const Image& image, const std::filesystem::path& file) {
+  write_bytes(encode(image, ".png", {}, OIIO::TypeDesc::UINT16), file);
 }
 
 void draw_text(Image& image, int x, int y, const std::string& text, int font_size, float value) {

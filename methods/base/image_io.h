@@ -45,6 +45,9 @@ ImageInfo read_image_info(const std::filesystem::path& file);
 /// cannot be written, std::invalid_argument for another extension or number of channels.
 void write_image(const Image& image, const std::filesystem::path& file, std::span<const ImageMap> maps = {});
 
+/// Writes 1 or 3 channels of values in [0, 1] as numbers n / 65535 of a 16-bit PNG, as write_image() does.
+void write_png_16(const Image& image, const std::filesystem::path& file);
+
 /// Draws one line of text in DejaVu Sans; (x, y) is the left end of the baseline, `value` the gray level in [0,1].
 /// Throws std::runtime_error when the font is not installed.
 void draw_text(Image& image, int x, int y, const std::string& text, int font_size, float value = 0.0F);

@@ -130,7 +130,7 @@ TEST_F(FpsTest, WhatTheRendererCannotDoIsTold) {
       {{"fps", "adsn", "white_noise"},
        "adsn has no shader for a graphics processor: expected one of dsn, texton_noise"},
       {{"fps", "dsn", "white_noise", "-p", "impacts=gaussian"}, "expected impacts = poisson or stratified"},
-      {{"fps", "dsn", "white_noise", "--ground"}, "whole points of the plane alone"},
+      {{"fps", "dsn", "white_noise", "--scene", "ground"}, "whole points of the plane alone"},
       {fps({"--size", "100000x2"}), "frame of 100000x2 pixels"},
       {fps({"--pitch", "20"}), "--pitch on the scene plane: expected --scene ground"},
       {fps({"--tilt", "20", "--scene", "ground"}), "--tilt on the scene ground: expected --scene sphere"},

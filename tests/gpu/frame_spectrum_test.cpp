@@ -4,22 +4,26 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <complex>
+#include <map>
+#include <memory>
+#include <string>
 
 #include "methods/base/fft.h"
 #include "methods/base/spectrum.h"
 #include "methods/method.h"
 #include "methods/spot/spot_noise.h"
 #include "tests/gpu/texton_shader.h"
+#include "tests/texture.h"
 
 namespace textonbench::frame_spectrum_test {
 
 constexpr Extent size{20, 16};
 constexpr int frames = 1500;
 
-/// Expectation of the periodogram |Z|²/|Ω| of a window: the DFT of Γ(v) times the window's own autocorrelation.
-Spectrum expected_periodogram(const Gaussian& law) {
+/// Expectation of the periodogram |Z|²/|Ω| of a window: the DFT of Γ(v) times the window's own autocorrelation. `grid`
+/// is at least twice the support of Γ.
+Spectrum expected_periodogram(const Gaussian& law, Extent grid = {2 * (size.width + 10), 2 * (size.height + 10)}) {
   const auto [w, h] = size;
-  const Extent grid{2 * (w + 10), 2 * (h + 10)};
   const CrossSpectrum p = law.spectrum(grid);
   const Autocovariance gamma = autocovariance(p);
   double constant = 0;  // autocovariance() leaves ξ = 0 out
@@ -39,13 +43,14 @@ Spectrum expected_periodogram(const Gaussian& law) {
 /// Frames of a recipe that no impact has in common, from one seed. Averages of 1500 squares of nearly Gaussian numbers
 /// leave 7 standard errors with probability below 1e-9 each (their skewness included), so a false alarm at one of the
 /// 176 frequencies has probability below 1e-6 / 2.
-void expect_periodogram(Context& context, const ShaderRecipe& recipe, double mean, const Spectrum& expected) {
+void expect_periodogram(Context& context, const ShaderRecipe& recipe, double mean, const Spectrum& expected,
+                        double apart = 64) {
   Renderer renderer(context, recipe, context.info().compute() ? ShaderPath::compute : ShaderPath::fragment);
   const int bins = size.width / 2 + 1;
   std::vector<double> sums(static_cast<std::size_t>(bins * size.height));
   std::vector<double> squares(sums.size());
   for (int k = 0; k < frames; ++k) {
-    Image frame = renderer.draw({.size = size, .origin = Eigen::Vector2d(64 * (k % 40), 64 * (k / 40))});
+    Image frame = renderer.draw({.size = size, .origin = apart * Eigen::Vector2d(k % 40, static_cast<int>(k / 40))});
     for (int y = 0; y < size.height; ++y) {
       for (float& v : frame.row(0, y)) v -= static_cast<float>(mean);
     }
@@ -106,6 +111,37 @@ TEST_F(FrameSpectrum, OfAUniformMixtureIsThatOfItsKernel) {
   const auto law = make_spline_noise(single, {.impacts = ImpactProcess::signed_poisson, .mni = 15});
   expect_periodogram(*context_, mixture->shader({.seed = Seed{3}}).value(), law->gaussian()->mean()[0],
                      expected_periodogram(*law->gaussian()));
+}
+
+/// A model of gray by its method's name.
+std::unique_ptr<Model> gray_model(const char* name, const std::map<std::string, ParamValue>& given) {
+  const MethodEntry& method = find_method(name);
+  const Exemplar exemplar{.name = "test", .pixels = test_texture({32, 32}, 1), .sha256 = ""};
+  return method.analyze({.exemplar = exemplar}, Params(method.params, given), Seed{1});
+}
+
+/// On the plane it has the law of texton noise (Proposition 3: mean and variance).
+TEST_F(FrameSpectrum, OfSurfaceNoiseIsTheClosedForm) {
+  for (const char* impacts : {"poisson", "stratified"}) {
+    SCOPED_TRACE(impacts);
+    const auto model = gray_model(
+        "surface_noise",
+        {{"surface", std::string("plane")}, {"support", std::int64_t{7}}, {"impacts", std::string(impacts)}});
+    expect_periodogram(*context_, model->shader({.seed = Seed{3}}).value(), model->gaussian()->mean()[0],
+                       expected_periodogram(*model->gaussian()));
+  }
+}
+
+TEST_F(FrameSpectrum, OfGaborNoiseIsTheClosedForm) {
+  const auto model = gray_model("gabor", {{"frequency", 0.2}, {"bandwidth", 0.2}});
+  expect_periodogram(*context_, model->shader({.seed = Seed{3}}).value(), model->gaussian()->mean()[0],
+                     expected_periodogram(*model->gaussian(), {128, 128}));
+}
+
+TEST_F(FrameSpectrum, OfLocalRandomPhaseIsTheClosedForm) {
+  const auto model = gray_model("lrp", {{"cosines", std::int64_t{8}}});
+  expect_periodogram(*context_, model->shader({.seed = Seed{3}}).value(), model->gaussian()->mean()[0],
+                     expected_periodogram(*model->gaussian(), {512, 512}), 500);
 }
 
 }  // namespace textonbench::frame_spectrum_test
