@@ -10,50 +10,109 @@
 #include <fstream>
 #include <stdexcept>
 #include <string_view>
+#include <variant>
 
 #include "gpu/shader_source.h"
 #include "methods/base/image_io.h"
-#include "methods/spot/spline_scale.h"
 
 namespace textonbench {
 namespace {
 
 constexpr double most_code = 65535;
 
-void require_exportable(const SplineTexton& texton, const SplineNoiseOptions& options) {
-  const int order = texton.order, channels = texton.coefficients.channels();
-  if (order != 0 && order != 1 && order != 3) {
-    throw std::invalid_argument(
-        fmt::format("export of splines of order {}: bilinear fetches make orders 0, 1 and 3", order));
+/// PROCESS of gpu/shaders/impact_grid.glsl.
+struct ProcessNumber {
+  static constexpr int signed_poisson = 1, stratified = 2, paper = 3;
+};
+
+/// What the recipe says, by the names that its shader reads.
+class TextonRecipe {
+ public:
+  explicit TextonRecipe(const ShaderRecipe& recipe) : recipe_(recipe) {
+    if (recipe.shader != "texton_noise" || recipe.textures.size() != 1) {
+      throw std::invalid_argument(
+          fmt::format("export of the shader {}: expected texton_noise, whose kernels are one texture", recipe.shader));
+    }
+    if (find_define("SHARE") != nullptr) {
+      throw std::invalid_argument("export of kernels chosen by place: expected texton_noise, of one texture");
+    }
+    if (order() != 0 && order() != 1 && order() != 3) {
+      throw std::invalid_argument(
+          fmt::format("export of splines of order {}: bilinear fetches make orders 0, 1 and 3", order()));
+    }
+    if (recipe.channels > 3) {
+      throw std::invalid_argument(fmt::format(
+          "export of {} channels: expected at most 3, those of one texture; export maps one by one", recipe.channels));
+    }
+    if (process() == ProcessNumber::paper) {
+      throw std::invalid_argument(
+          "export of the paper's impacts, which repeat: expected impacts=stratified or impacts=poisson");
+    }
   }
-  if (channels > 3) {
-    throw std::invalid_argument(fmt::format(
-        "export of {} channels: expected at most 3, those of one texture; export maps one by one", channels));
+
+  int order() const { return define("ORDER"); }
+  int process() const { return define("PROCESS"); }
+  int kernels() const { return define("KERNELS"); }
+  Extent kernel() const { return {define("WIDTH"), define("HEIGHT")}; }
+  int channels() const { return recipe_.channels; }
+  double side() const { return uniform<std::int32_t>("cell_side") / 1024.0; }
+  std::uint64_t key() const {
+    const auto words = uniform<std::array<std::uint32_t, 2>>("key");
+    return std::uint64_t{words[1]} << 32U | words[0];
   }
-  if (options.impacts == ImpactProcess::paper) {
-    throw std::invalid_argument(
-        "export of the paper's impacts, which repeat: expected impacts=stratified or impacts=poisson");
+  std::vector<float> start() const { return uniform<std::vector<float>>("start"); }
+  /// Of a cell's number of impacts, none where there is one.
+  std::vector<std::uint32_t> thresholds() const {
+    if (process() == ProcessNumber::stratified) return {};
+    const std::vector<std::uint32_t>& words = recipe_.words.front().words;
+    return {words.begin(), words.begin() + define("THRESHOLDS")};
   }
-  if (options.share) {
-    throw std::invalid_argument("export of kernels chosen by place: expected texton_noise, of one texture");
+  /// Impacts a cell: the sum of the probabilities that there are more than n.
+  double cell_mean() const {
+    if (process() == ProcessNumber::stratified) return 1;
+    double mean = 0;
+    for (const std::uint32_t threshold : thresholds()) mean += 1 - threshold * 0x1p-32;
+    return mean;
   }
-}
+  float texel(int kernel, int channel, int x, int y) const {
+    const ShaderTexture& texture = recipe_.textures.front();
+    const auto row =
+        static_cast<std::size_t>(kernel) * static_cast<std::size_t>(texture.size.height) + static_cast<std::size_t>(y);
+    const std::size_t place = row * static_cast<std::size_t>(texture.size.width) + static_cast<std::size_t>(x);
+    return texture.levels
+        .front()[place * static_cast<std::size_t>(texture.components) + static_cast<std::size_t>(channel)];
+  }
+
+ private:
+  const std::string* find_define(std::string_view name) const {
+    const auto found =
+        std::ranges::find(recipe_.defines, name, [](const auto& d) -> std::string_view { return d.first; });
+    return found == recipe_.defines.end() ? nullptr : &found->second;
+  }
+  int define(std::string_view name) const { return std::stoi(*find_define(name)); }
+  template <class Value>
+  Value uniform(std::string_view name) const {
+    const auto found =
+        std::ranges::find(recipe_.uniforms, name, [](const auto& u) -> std::string_view { return u.first; });
+    return std::get<Value>(found->second);
+  }
+
+  const ShaderRecipe& recipe_;
+};
 
 /// So wide that fetches of a kernel's last coefficients meet no other kernel and no edge of the texture.
 int frame_of_order(int order) { return order == 3 ? 3 : 1; }
 
-Image framed_kernels(const SplineTexton& texton, double scale) {
-  const Texton& coefficients = texton.coefficients;
-  const int frame = frame_of_order(texton.order), count = static_cast<int>(coefficients.kernels.size());
-  const auto [width, height] = coefficients.extent();
-  const int channels = coefficients.channels() == 2 ? 3 : coefficients.channels();
-  Image texels({width + 2 * frame, count * (height + frame) + frame}, channels);
-  for (int k = 0; k < count; ++k) {
-    const Image& kernel = coefficients.kernels[static_cast<std::size_t>(k)];
-    for (int c = 0; c < kernel.channels(); ++c) {
+Image framed_kernels(const TextonRecipe& recipe) {
+  const int frame = frame_of_order(recipe.order());
+  const auto [width, height] = recipe.kernel();
+  Image texels({width + 2 * frame, recipe.kernels() * (height + frame) + frame},
+               recipe.channels() == 2 ? 3 : recipe.channels());
+  for (int k = 0; k < recipe.kernels(); ++k) {
+    for (int c = 0; c < recipe.channels(); ++c) {
       for (int y = 0; y < height; ++y) {
-        std::ranges::transform(kernel.row(c, y), texels.row(c, frame + k * (height + frame) + y).begin() + frame,
-                               [scale](float v) { return static_cast<float>(scale * v); });
+        const auto row = texels.row(c, frame + k * (height + frame) + y);
+        for (int x = 0; x < width; ++x) row[static_cast<std::size_t>(frame + x)] = recipe.texel(k, c, x, y);
       }
     }
   }
@@ -90,13 +149,11 @@ std::string glsl_vector(const std::vector<float>& values) {
   return fmt::format("vec4({})", fmt::join(four, ", "));
 }
 
-std::string constants(const GlslExport& made, const SplineTexton& texton, const ImpactGrid& grid,
-                      const std::vector<float>& start) {
+std::string constants(const GlslExport& made, const TextonRecipe& recipe) {
   constexpr std::array<std::string_view, 3> types{"float", "vec2", "vec3"}, swizzles{"x", "xy", "xyz"};
-  const auto channels = static_cast<std::size_t>(texton.coefficients.channels()) - 1;
-  const auto [width, height] = texton.coefficients.extent();
-  const int frame = frame_of_order(texton.order);
-  const bool stratified = grid.process() == ImpactProcess::stratified;
+  const auto channels = static_cast<std::size_t>(recipe.channels()) - 1;
+  const auto [width, height] = recipe.kernel();
+  const int frame = frame_of_order(recipe.order());
   std::string text =
       "// Texton noise (Galerne, Leclaire, Moisan, Computer Graphics Forum 2017), exported by textonbench. GLSL "
       "3.30.\n";
@@ -105,17 +162,17 @@ std::string constants(const GlslExport& made, const SplineTexton& texton, const 
   };
   define("TYPE", types[channels]);
   define("CHANNELS", swizzles[channels]);
-  define("ORDER", texton.order);
-  define("KERNELS", texton.coefficients.kernels.size());
+  define("ORDER", recipe.order());
+  define("KERNELS", recipe.kernels());
   define("WIDTH", width);
   define("HEIGHT", height);
   define("TEXELS", fmt::format("ivec2({}, {})", made.texels.width(), made.texels.height()));
   define("FRAME", frame);
   define("TILE", height + frame);
-  define("STRATIFIED", stratified ? 1 : 0);
-  define("SIGNED", grid.process() == ImpactProcess::signed_poisson ? 1 : 0);
-  text += fmt::format("#define TEXTON_NOISE_CELL {:#.12g}  // side of a cell, pixels of the exemplar\n", grid.side());
-  define("START", glsl_vector(start));
+  define("STRATIFIED", recipe.process() == ProcessNumber::stratified ? 1 : 0);
+  define("SIGNED", recipe.process() == ProcessNumber::signed_poisson ? 1 : 0);
+  text += fmt::format("#define TEXTON_NOISE_CELL {:#.12g}  // side of a cell, pixels of the exemplar\n", recipe.side());
+  define("START", glsl_vector(recipe.start()));
   text += fmt::format(
       "#ifdef TEXTON_NOISE_FROM_PNG  // define it where the texture is texton.png, not texton.exr\n"
       "#define TEXTON_NOISE_SCALE {:#.9g}\n#define TEXTON_NOISE_OFFSET {:#.9g}\n#else\n"
@@ -123,8 +180,8 @@ std::string constants(const GlslExport& made, const SplineTexton& texton, const 
       made.scale, made.offset);
   text += fmt::format("const uvec2 texton_noise_key = uvec2(0x{:08X}u, 0x{:08X}u);\n",
                       static_cast<std::uint32_t>(made.key), static_cast<std::uint32_t>(made.key >> 32U));
-  if (!stratified) {
-    const std::vector<std::uint32_t>& thresholds = grid.thresholds();
+  if (recipe.process() != ProcessNumber::stratified) {
+    const std::vector<std::uint32_t> thresholds = recipe.thresholds();
     define("MOST", thresholds.size());
     const std::size_t length = std::max<std::size_t>(thresholds.size(), 1);
     text += fmt::format("const uint texton_noise_thresholds[{}] = uint[{}]({}u);\n", length, length,
@@ -142,23 +199,23 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
 
 }  // namespace
 
-GlslExport make_glsl_export(const SplineTexton& texton, const SplineNoiseOptions& options, Seed seed) {
-  require_exportable(texton, options);
-  const ImpactGrid grid = spline_noise_impacts(texton, options);
-  const double scale = spline_noise_scale(texton, options, grid);
-  const Extent kernel = texton.coefficients.extent();
+GlslExport make_glsl_export(const ShaderRecipe& shader) {
+  const TextonRecipe recipe(shader);
+  const Extent kernel = recipe.kernel();
   GlslExport made;
-  made.key = spline_noise_key(seed);
-  made.texels = framed_kernels(texton, scale);
-  encode_texels(made, grid.intensity(), kernel);
-  made.fetches_an_impact = texton.order == 3 ? 4 : 1;
-  const double across = kernel.width + texton.order, down = kernel.height + texton.order;
-  made.fetches = grid.intensity() * across * down * made.fetches_an_impact;
-  made.cell = grid.side();
-  made.cells = (std::floor(across / grid.side()) + 2) * (std::floor(down / grid.side()) + 2);
-  made.function = constants(made, texton, grid, spline_noise_start(texton, scale, grid)) + "\n" +
-                  shader_files().at("export_texton_noise.glsl");
-  const int channels = texton.coefficients.channels();
+  made.key = recipe.key();
+  made.order = recipe.order();
+  made.kernels = recipe.kernels();
+  made.cell = recipe.side();
+  made.texels = framed_kernels(recipe);
+  const double intensity = recipe.cell_mean() / (made.cell * made.cell);
+  encode_texels(made, intensity, kernel);
+  made.fetches_an_impact = made.order == 3 ? 4 : 1;
+  const double across = kernel.width + made.order, down = kernel.height + made.order;
+  made.fetches = intensity * across * down * made.fetches_an_impact;
+  made.cells = (std::floor(across / made.cell) + 2) * (std::floor(down / made.cell) + 2);
+  made.function = constants(made, recipe) + "\n" + shader_files().at("export_texton_noise.glsl");
+  const int channels = recipe.channels();
   const std::string_view color = channels == 1   ? "vec4(vec3(noise), 1.0)"
                                  : channels == 2 ? "vec4(noise, 0.0, 1.0)"
                                                  : "vec4(noise, 1.0)";
@@ -169,7 +226,7 @@ GlslExport make_glsl_export(const SplineTexton& texton, const SplineNoiseOptions
   return made;
 }
 
-std::string glsl_readme(const GlslExport& made, const SplineTexton& texton, const GlslOrigin& origin) {
+std::string glsl_readme(const GlslExport& made, const GlslOrigin& origin) {
   const double kilobytes = 1e-3 * static_cast<double>(made.texels.extent().area()) * made.texels.channels();
   return fmt::format(
       R"(# Texton noise of {exemplar}
@@ -189,9 +246,8 @@ Made by `{command}`. Exemplar: SHA-256 {sha256}, license {licence}; the texton i
       fmt::arg("licence", origin.licence), fmt::arg("fetches", made.fetches), fmt::arg("each", made.fetches_an_impact),
       fmt::arg("cells", made.cells), fmt::arg("full", 4 * kilobytes), fmt::arg("half", 2 * kilobytes),
       fmt::arg("error", made.png_error),
-      fmt::arg("filter", texton.order == 0 ? "nearest texel" : "linear between texels"), fmt::arg("key", made.key),
-      fmt::arg("cell", made.cell), fmt::arg("order", texton.order),
-      fmt::arg("kernels", texton.coefficients.kernels.size()));
+      fmt::arg("filter", made.order == 0 ? "nearest texel" : "linear between texels"), fmt::arg("key", made.key),
+      fmt::arg("cell", made.cell), fmt::arg("order", made.order), fmt::arg("kernels", made.kernels));
 }
 
 std::vector<std::filesystem::path> write_glsl_export(const GlslExport& made, const Image& preview,

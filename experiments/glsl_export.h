@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "methods/spot/spline_noise.h"
+#include "methods/base/image.h"
+#include "methods/base/shader_recipe.h"
 
 namespace textonbench {
 
@@ -23,17 +24,18 @@ struct GlslExport {
   double cell = 0;     ///< side, pixels
   double cells = 0;    ///< most that a point visits
   std::uint64_t key = 0;
+  int order = 1, kernels = 1;
 };
 
-/// The noise of a seed. Throws std::invalid_argument for orders other than 0, 1 and 3, more than three channels, the
-/// paper's impacts and kernels chosen by place.
-GlslExport make_glsl_export(const SplineTexton& texton, const SplineNoiseOptions& options, Seed seed);
+/// From the recipe of texton noise around the origin, with manual fetches. Throws std::invalid_argument for another
+/// recipe, orders other than 0, 1 and 3, more than three channels, the paper's impacts and kernels chosen by place.
+GlslExport make_glsl_export(const ShaderRecipe& recipe);
 
 /// Of README.md: what the noise is of, and how it was made.
 struct GlslOrigin {
   std::string exemplar, sha256, licence, command;
 };
-std::string glsl_readme(const GlslExport& made, const SplineTexton& texton, const GlslOrigin& origin);
+std::string glsl_readme(const GlslExport& made, const GlslOrigin& origin);
 
 /// Writes texton_noise.glsl, example.frag, texton.exr, texton.png, preview.png and README.md to a new folder, which
 /// appears complete or not at all. Returns the files. Throws std::invalid_argument for a folder that exists, and

@@ -12,6 +12,7 @@
 #include "experiments/execute.h"
 #include "experiments/glsl_export.h"
 #include "experiments/provenance.h"
+#include "experiments/shader_models.h"
 
 namespace textonbench::cli {
 namespace {
@@ -47,22 +48,16 @@ int export_glsl(const GlslArguments& arguments, const GlobalOptions& globals) {
   ModelOptions asked = arguments.model;
   asked.size = "256x256";  // of the preview
   const Fitted fitted = fit_to_exemplar(asked, globals.quiet);
-  const SplineNoiseOptions* options = spline_noise_of(*fitted.model);
-  if (options == nullptr) {
-    throw std::invalid_argument(
-        fmt::format("{} cannot be exported: expected a method that sums splines at points of the plane, texton_noise",
-                    asked.method));
-  }
-  const SplineTexton& texton = *fitted.model->spline_texton();
   const Seed seed = sample_seed(asked.seed, 0);
-  const GlslExport made = make_glsl_export(texton, *options, seed);
+  const GlslExport made = make_glsl_export(
+      shader_of(*fitted.model, asked.method, {.seed = seed, .near = {0, 0}, .fetch = ShaderFetch::manual}));
   const Image sample = fitted.model->synthesize({.size = {256, 256}}, seed);
   const ExemplarInfo info = find_exemplar(ExemplarCatalog(home_folder()), asked.exemplar);
   const GlslOrigin origin{.exemplar = info.name,
                           .sha256 = exemplar_sha256(info),
                           .licence = info.licence.empty() ? "not stated" : info.licence,
                           .command = command_of(asked)};
-  const std::string readme = glsl_readme(made, texton, origin);
+  const std::string readme = glsl_readme(made, origin);
   const auto files = write_glsl_export(made, as_picture(sample), readme, arguments.output);
   if (arguments.json) {
     nlohmann::ordered_json document = {{"output", arguments.output.string()},

@@ -10,7 +10,7 @@
 namespace textonbench {
 namespace {
 
-constexpr int most_channels = 8;
+constexpr int most_kernel_channels = 8;
 constexpr int group_channels = 4;  // of a layer
 
 bool is_filtered(const ShaderRequest& request) { return request.filter != ShaderFilter::none; }
@@ -126,9 +126,9 @@ int filter_number(ShaderFilter filter) {
 
 void require_shader_kernels(const SplineTexton& texton, const ShaderRequest& request) {
   const int order = texton.order;
-  if (texton.coefficients.channels() > most_channels) {
+  if (texton.coefficients.channels() > most_kernel_channels) {
     throw std::invalid_argument(fmt::format("shader for texton noise of {} channels: expected at most {}",
-                                            texton.coefficients.channels(), most_channels));
+                                            texton.coefficients.channels(), most_kernel_channels));
   }
   if (is_filtered(request) && order != 1) {
     throw std::invalid_argument(fmt::format(

@@ -43,7 +43,8 @@ TEST(ExportGlslTest, WhatCannotBeExportedIsToldAndWritesNothing) {
   std::filesystem::create_directory(folder.path() / "there");
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
       {{"export", "glsl", "texton_noise", "white_noise", "-o", "there"}, "there exists: expected a new folder"},
-      {{"export", "glsl", "lrp", "white_noise", "-o", "new"}, "lrp cannot be exported: expected"},
+      {{"export", "glsl", "lrp", "white_noise", "-o", "new"},
+       "export of the shader local_random_phase: expected texton_noise"},
       {{"export", "glsl", "texton_noise", "white_noise", "-p", "order=2", "-o", "new"}, "orders 0, 1 and 3"},
       {{"export", "glsl", "texton_noise", "nothing", "-o", "new"}, "nothing"},
       {{"export", "glsl", "texton_noise", "white_noise"}, "--output"},

@@ -31,6 +31,11 @@ SplineTexton bright_texton(int order, int channels, int kernels) {
   return texton;
 }
 
+GlslExport export_of(const SplineTexton& texton, const SplineNoiseOptions& options) {
+  return make_glsl_export(
+      make_spline_noise(texton, options)->shader({.seed = seed, .fetch = ShaderFetch::manual}).value());
+}
+
 class GlslExportTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -102,7 +107,7 @@ TEST_F(GlslExportTest, IsTheProcessorsPicture) {
         SCOPED_TRACE(testing::Message() << order << " " << static_cast<int>(process) << " " << kernels);
         const SplineTexton texton = bright_texton(order, channels, kernels);
         const SplineNoiseOptions options{.impacts = process, .mni = process == ImpactProcess::poisson ? 20.0 : 5.0};
-        const GlslExport made = make_glsl_export(texton, options, seed);
+        const GlslExport made = export_of(texton, options);
         const Image expected = make_spline_noise(texton, options)->synthesize({.size = size}, seed);
         const std::filesystem::path exported = folder.path() / std::to_string(order * 10 + kernels);
         if (process == ImpactProcess::stratified) {
@@ -125,7 +130,7 @@ TEST_F(GlslExportTest, IsTheProcessorsPicture) {
 TEST_F(GlslExportTest, FarPlacesAreExactByTheirCell) {
   const SplineTexton texton = bright_texton(1, 1, 1);
   const SplineNoiseOptions options{.impacts = ImpactProcess::stratified, .mni = 5};
-  const GlslExport made = make_glsl_export(texton, options, seed);
+  const GlslExport made = export_of(texton, options);
   constexpr int cell = -100000000;
   const std::string example =
       std::regex_replace(made.example, std::regex(R"(texton_noise\(texton, gl_FragCoord\.xy - 0\.5\))"),
@@ -137,8 +142,7 @@ TEST_F(GlslExportTest, FarPlacesAreExactByTheirCell) {
 }
 
 TEST(GlslExportFilesTest, StandsAlone) {
-  const GlslExport made =
-      make_glsl_export(bright_texton(1, 3, 1), {.impacts = ImpactProcess::poisson, .mni = 30}, seed);
+  const GlslExport made = export_of(bright_texton(1, 3, 1), {.impacts = ImpactProcess::poisson, .mni = 30});
   EXPECT_THAT(made.function, Not(HasSubstr("#include")));
   EXPECT_THAT(made.function, Not(HasSubstr("#extension")));
   EXPECT_THAT(made.function, Not(HasSubstr("uniform")));
@@ -150,7 +154,7 @@ TEST(GlslExportFilesTest, StandsAlone) {
 TEST(GlslExportFilesTest, AFolderThatExistsIsLeftAlone) {
   const TemporaryFolder folder;
   const SplineTexton texton = bright_texton(1, 1, 1);
-  const GlslExport made = make_glsl_export(texton, {}, seed);
+  const GlslExport made = export_of(texton, {});
   const auto files = write_glsl_export(made, Image(size, 1), "text", folder.path() / "new");
   EXPECT_EQ(files.size(), 6U);
   for (const auto& file : files) EXPECT_TRUE(std::filesystem::exists(file)) << file;
@@ -170,7 +174,7 @@ TEST(GlslExportFilesTest, AFolderThatExistsIsLeftAlone) {
 TEST(GlslExportFilesTest, WhatCannotBeExportedSaysWhy) {
   const auto reason = [](const SplineTexton& texton, const SplineNoiseOptions& options) -> std::string {
     try {
-      make_glsl_export(texton, options, seed);
+      export_of(texton, options);
     } catch (const std::invalid_argument& error) {
       return error.what();
     }
@@ -183,8 +187,8 @@ TEST(GlslExportFilesTest, WhatCannotBeExportedSaysWhy) {
 
 TEST(GlslExportFilesTest, TheReadmeHasTheNumbers) {
   const SplineTexton texton = bright_texton(1, 3, 1);
-  const GlslExport made = make_glsl_export(texton, {.impacts = ImpactProcess::stratified, .mni = 5}, seed);
-  const std::string readme = glsl_readme(made, texton, {"cork", "abc", "CC0-1.0", "textonbench export"});
+  const GlslExport made = export_of(texton, {.impacts = ImpactProcess::stratified, .mni = 5});
+  const std::string readme = glsl_readme(made, {"cork", "abc", "CC0-1.0", "textonbench export"});
   EXPECT_THAT(readme, HasSubstr(std::to_string(made.fetches).substr(0, 3) + " fetches"));
   EXPECT_THAT(readme, HasSubstr("license CC0-1.0"));
   EXPECT_THAT(readme, HasSubstr("abc"));

@@ -239,7 +239,9 @@ TEST(ShaderSourceTest, LogsOfBothKindsOfDriversGetTheFilesNames) {
 
 TEST(ShaderSourceTest, EveryFileIsIncludedOnce) {
   const ShaderSource source = shader_source("430 core", "compute.glsl", plane_probe());
-  EXPECT_THAT(source.files, testing::ElementsAre("compute.glsl", "frame.glsl", "plane.glsl", "plane_probe.glsl"));
+  EXPECT_THAT(source.files,
+              testing::UnorderedElementsAre("compute.glsl", "plane.glsl", "space.glsl", "surface_frame.glsl",
+                                            "frame.glsl", "plane_probe.glsl", "sample.glsl"));
   EXPECT_THAT(source.text, HasSubstr("#define CHANNELS 8"));
   EXPECT_EQ(source.text.find("#include"), std::string::npos);
 }
