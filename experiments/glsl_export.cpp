@@ -112,7 +112,8 @@ Image framed_kernels(const TextonRecipe& recipe) {
     for (int c = 0; c < recipe.channels(); ++c) {
       for (int y = 0; y < height; ++y) {
         const auto row = texels.row(c, frame + k * (height + frame) + y);
-        for (int x = 0; x < width; ++x) row[static_cast<std::size_t>(frame + x)] = recipe.texel(k, c, x, y);
+        for (int x = 0; x < width; ++x)
+          row[static_cast<std::size_t>(frame) + static_cast<std::size_t>(x)] = recipe.texel(k, c, x, y);
       }
     }
   }

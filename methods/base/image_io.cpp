@@ -182,7 +182,7 @@ OIIO::ImageBuf to_buffer(const Image& image) {
 
 /// The bytes of a PNG or EXR file.
 std::vector<unsigned char> encode(const Image& image, const std::string& extension, std::span<const ImageMap> maps,
-                                  OIIO::TypeDesc of_png = OIIO::TypeDesc::UINT8) {
+                                  const OIIO::TypeDesc& of_png = OIIO::TypeDesc::UINT8) {
   OIIO::ImageBuf buffer = to_buffer(image);
   if (!maps.empty()) {
     buffer.specmod().channelnames = channel_names(maps);
