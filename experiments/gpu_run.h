@@ -11,8 +11,8 @@
 
 namespace textonbench {
 
-/// Options of RunSpec::gpu: path, fetch, filter, window, half, supersampling, height and pitch of a camera over the ground
-/// (pitch 0: none), and scene, bump and displacement of a surface.
+/// Options of RunSpec::gpu: path, fetch, filter, window, half, supersampling, height and pitch of a camera over the
+/// ground (pitch 0: none), and scene, bump and displacement of a surface.
 std::span<const ParamSpec> gpu_run_options();
 
 /// Why a run cannot be what these parts of it say.

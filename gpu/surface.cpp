@@ -81,10 +81,11 @@ std::vector<std::pair<std::string, std::string>> surface_defines(const ShaderRec
   if (is_derivative) defines.emplace_back("DERIVATIVE", std::to_string(recipe.derivative));
   defines.emplace_back("GRADIENTS", bumpy || is_derivative ? "1" : "0");
   if ((bumpy || is_derivative) && !recipe.gradients) {
-    throw std::invalid_argument(fmt::format(
-        "derivatives of {}, which bump mapping takes: its shader has no gradients with these options; of splines, expected order 1 or more and "
-        "no filter",
-        recipe.shader));
+    throw std::invalid_argument(
+        fmt::format("derivatives of {}, which bump mapping takes: its shader has no gradients with these options; of "
+                    "splines, expected order 1 or more and "
+                    "no filter",
+                    recipe.shader));
   }
   return defines;
 }

@@ -21,8 +21,7 @@ double sum_of_integrals(const SplineTexton& texton, int channel) {
 }  // namespace
 
 double spline_noise_scale(const SplineTexton& texton, const SplineNoiseOptions& options, const ImpactGrid& grid) {
-  return std::sqrt((options.share ? 1.0 : static_cast<double>(texton.coefficients.kernels.size())) /
-                   grid.intensity());
+  return std::sqrt((options.share ? 1.0 : static_cast<double>(texton.coefficients.kernels.size())) / grid.intensity());
 }
 
 std::vector<float> spline_noise_start(const SplineTexton& texton, double scale, const ImpactGrid& grid) {
