@@ -159,26 +159,12 @@ void Surface::resize(Extent size) {
   require_drawable(context_, size);
   release();
   const GlFunctions& gl = context_.gl();
-  gl.GenTextures(static_cast<GLsizei>(textures_.size()), textures_.data());
-  gl.GenFramebuffers(1, &framebuffer_);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-  std::vector<GLenum> targets;
-  targets.reserve(textures_.size());
-  for (const GLuint texture : textures_) {
-    gl.BindTexture(GL_TEXTURE_2D, texture);
-    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, size.width, size.height, 0, GL_RGBA, GL_FLOAT, nullptr);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    targets.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(targets.size()));
-    gl.FramebufferTexture2D(GL_FRAMEBUFFER, targets.back(), GL_TEXTURE_2D, texture, 0);
-  }
+  framebuffer_ = make_float_framebuffer(context_, size, textures_);
   gl.GenRenderbuffers(1, &depth_);
   gl.BindRenderbuffer(GL_RENDERBUFFER, depth_);
   gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, size.width, size.height);
   gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
   context_.check(fmt::format("making the frame of a surface, {}x{} pixels", size.width, size.height));
-  gl.DrawBuffers(static_cast<GLsizei>(targets.size()), targets.data());
   if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     throw GpuError(
         fmt::format("{} does not draw surfaces to float32 textures: take another --context, or the processor",
@@ -195,6 +181,8 @@ void Surface::prepare(Extent size, const SurfaceView& view, double step,
   const double radius = picture_radius(size) * view.zoom, pixel_step = step / view.zoom;
   program_.set("picture", std::array{static_cast<float>(size.width), static_cast<float>(size.height)});
   program_.set("radius", static_cast<float>(radius));
+  // Heights are within 4 of the middle but for values that no picture has.
+  program_.set("farthest", static_cast<float>(1.01 * radius + 4 * std::abs(view.displacement) / pixel_step));
   program_.set("pixel_step", static_cast<float>(pixel_step));
   program_.set("coordinate_scale", static_cast<float>(coordinate_scale_ * radius * pixel_step));
   program_.set("displacement", static_cast<float>(view.displacement));

@@ -109,6 +109,27 @@ void require_drawable(const Context& context, Extent size) {
   }
 }
 
+GLuint make_float_framebuffer(Context& context, Extent size, std::span<GLuint> textures) {
+  const GlFunctions& gl = context.gl();
+  GLuint framebuffer = 0;
+  gl.GenTextures(static_cast<GLsizei>(textures.size()), textures.data());
+  gl.GenFramebuffers(1, &framebuffer);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  std::vector<GLenum> targets;
+  targets.reserve(textures.size());
+  for (const GLuint texture : textures) {
+    gl.BindTexture(GL_TEXTURE_2D, texture);
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, size.width, size.height, 0, GL_RGBA, GL_FLOAT, nullptr);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    targets.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(targets.size()));
+    gl.FramebufferTexture2D(GL_FRAMEBUFFER, targets.back(), GL_TEXTURE_2D, texture, 0);
+  }
+  gl.DrawBuffers(static_cast<GLsizei>(targets.size()), targets.data());
+  return framebuffer;
+}
+
 Texture::Texture(Context& context, GLenum target) : context_(&context), target_(target) {
   context.gl().GenTextures(1, &name_);
   context.gl().BindTexture(target_, name_);
@@ -189,22 +210,10 @@ void FrameTarget::resize(Extent size) {
   require_drawable(context_, size);
   release();
   const GlFunctions& gl = context_.gl();
-  gl.GenTextures(static_cast<GLsizei>(textures_.size()), textures_.data());
-  gl.GenFramebuffers(1, &framebuffer_);
+  framebuffer_ = make_float_framebuffer(context_, size, textures_);
   gl.GenVertexArrays(1, &vertices_);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-  std::vector<GLenum> targets;
-  targets.reserve(textures_.size());
-  for (const GLuint texture : textures_) {
-    gl.BindTexture(GL_TEXTURE_2D, texture);
-    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, size.width, size.height, 0, GL_RGBA, GL_FLOAT, nullptr);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
-    targets.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(targets.size()));
-    gl.FramebufferTexture2D(GL_FRAMEBUFFER, targets.back(), GL_TEXTURE_2D, texture, 0);
-  }
   const double bytes = 4.0 * sizeof(float) * static_cast<double>(size.area()) * static_cast<double>(textures_.size());
   context_.check(fmt::format("making a frame of {}x{} pixels ({})", size.width, size.height, megabytes(bytes)));
-  gl.DrawBuffers(static_cast<GLsizei>(targets.size()), targets.data());
   if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     throw GpuError(fmt::format("{} does not draw to float32 textures: take another --context, or the processor",
                                context_.info().renderer));

@@ -1,6 +1,7 @@
 // Textures that a shader reads, and those that a frame is drawn to.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "gpu/context.h"
@@ -11,6 +12,10 @@ namespace textonbench {
 
 /// Throws GpuError for a frame larger than the driver draws, before anything of it is made.
 void require_drawable(const Context& context, Extent size);
+
+/// Fills `textures` with new ones of float32 pixels of four channels, which are fetched texel by texel, and returns a
+/// new framebuffer, which is bound and draws to them in their order.
+GLuint make_float_framebuffer(Context& context, Extent size, std::span<GLuint> textures);
 
 class Texture {
  public:

@@ -62,11 +62,14 @@ void ModelOptions::add_domain_to(CLI::App& app) {
   app.add_option("--step", step, "Distance of a sample's pixels in pixels of the exemplar, for noises of the plane")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
+}
+
+void ModelOptions::add_origin_to(CLI::App& app) {
   app.add_option("--origin", origin, "Place X,Y of a window's first pixel, in pixels of the exemplar (0,0)")
       ->delimiter(',')
       ->expected(2)
       ->type_name("X,Y")
-      ->excludes(torus);
+      ->excludes(app.get_option("--periodic"));
 }
 
 std::map<std::string, ParamValue> ModelOptions::given_params(std::span<const ParamSpec> specs) const {

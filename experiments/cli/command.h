@@ -69,6 +69,8 @@ struct ModelOptions {
   void add_method_to(CLI::App& app, bool required = true);
   void add_params_to(CLI::App& app);
   void add_domain_to(CLI::App& app);
+  /// Of an app that has the options of a domain.
+  void add_origin_to(CLI::App& app);
   std::map<std::string, ParamValue> given_params(std::span<const ParamSpec> specs) const;
   Params read_params(const MethodEntry& entry) const;
   /// The size asked for, or 0x0 for the exemplar's own.

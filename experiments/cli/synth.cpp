@@ -170,7 +170,8 @@ int synthesize(const SynthOptions& options, const GlobalOptions& globals) {
                                        {"seed", asked.seed},
                                        {"size", {domain.size.width, domain.size.height}},
                                        {"periodic", domain.periodic},
-                                       {"step", domain.step}};
+                                       {"step", domain.step},
+                                       {"origin", {domain.origin.x, domain.origin.y}}};
     if (context) document["gpu"] = to_json(context->info());
     print_json(document);
     return 0;
@@ -192,6 +193,7 @@ Command synth_command(CLI::App& app, const GlobalOptions& globals) {
   options->model.add_method_to(*synth, false);
   options->model.add_params_to(*synth);
   options->model.add_domain_to(*synth);
+  options->model.add_origin_to(*synth);
   synth->add_option(
       "--model", options->model_file,
       "Instead of METHOD EXEMPLAR: a model that textonbench fit wrote (.json), or a .texton; -p then takes "

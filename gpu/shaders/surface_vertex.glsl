@@ -17,6 +17,7 @@ uniform vec4 towards;  // … the last one towards the viewer
 uniform vec2 middle;   // of the ball in the picture, pixels from the center of the first one
 uniform vec2 picture;  // pixels
 uniform float radius;  // of the ball, pixels
+uniform float farthest;  // that a corner may be from its middle
 uniform float pixel_step;         // of the texture, a pixel of the picture
 uniform float coordinate_scale;   // pixels of the texture a coordinate
 uniform float displacement;       // pixels of the texture a unit of its height
@@ -41,6 +42,5 @@ void main() {
   place += displacement / pixel_step * (height - 0.5) * normalize(corner_normal);
 #endif
   vec2 pixel = vec2(dot(right.xyz, place), dot(down.xyz, place)) + middle;
-  // A displaced surface may leave the ball by half its radius.
-  gl_Position = vec4((2.0 * pixel + 1.0) / picture - 1.0, dot(towards.xyz, place) / (-1.5 * radius), 1.0);
+  gl_Position = vec4((2.0 * pixel + 1.0) / picture - 1.0, -dot(towards.xyz, place) / farthest, 1.0);
 }

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "experiments/execute.h"
 #include "experiments/exemplars.h"
@@ -42,6 +44,25 @@ TEST(SynthTest, ALargeWindowIsDrawnInBandsOfOneField) {
     }
   }
   EXPECT_GT(variance, 0.01);
+}
+
+TEST(SynthTest, AnOriginMovesTheWindow) {
+  const TemporaryFolder folder;
+  const auto synth = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all{"synth", "texton_noise", "white_noise", "-p", "support=9", "-p", "route=points"};
+    all.insert(all.end(), more.begin(), more.end());
+    return run_program(all, {folder.path()});
+  };
+  ASSERT_EQ(synth({"--size", "20x12", "-o", "whole.exr"}).status, 0);
+  ASSERT_EQ(synth({"--size", "5x4", "--origin", "7,3", "-o", "part.exr"}).status, 0);
+  const Image whole = read_image(folder.path() / "whole.exr").image;
+  const Image part = read_image(folder.path() / "part.exr").image;
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 5; ++x) EXPECT_EQ(part.at(1, x, y), whole.at(1, x + 7, y + 3)) << x << ' ' << y;
+  }
+  EXPECT_EQ(synth({"--periodic", "--origin", "7,3", "-o", "torus.exr"}).status, 2);
+  // A measurement has no place to keep an origin in.
+  EXPECT_EQ(run_program({"measure", "texton_noise", "white_noise", "--origin", "7,3"}, {folder.path()}).status, 2);
 }
 
 TEST(SynthTest, MemoryThatIsNotThereIsToldAndLeavesNoFile) {

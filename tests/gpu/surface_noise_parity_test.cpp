@@ -159,6 +159,22 @@ TEST_P(SurfaceParity, ASupersampledSurfaceIsTheMeanOfItsSamples) {
   }
 }
 
+TEST_P(SurfaceParity, ASurfaceFarFromItsBallIsNotCut) {
+  SplineTexton texton = shader_texton(1, 1, 1);
+  texton.coefficients.mean = {1.5};
+  const SurfaceSum sum(texton, {.impacts = ImpactProcess::stratified, .mni = 10});
+  const ShaderRecipe recipe = surface_noise_recipe(sum, {.seed = seed, .fetch = ShaderFetch::manual});
+  const SurfaceScene scene{
+      .mesh = std::make_shared<const TriangleMesh>(sphere_mesh(20)), .bumpy = true, .displaced = true};
+  // Of radius 24 pixels, moved outwards by about as much.
+  const Image frame = draw(recipe, {.size = {50, 50}, .surface = SurfaceView{.displacement = 24}}, scene);
+  int white = 0;
+  for (int y = 15; y < 35; ++y) {
+    for (int x = 15; x < 35; ++x) white += frame.at(0, x, y) == 1 ? 1 : 0;
+  }
+  EXPECT_EQ(white, 0);
+}
+
 TEST_P(SurfaceParity, WhatCannotBeDrawnIsRefused) {
   const SurfaceSum sum(shader_texton(1, 1, 1), {.impacts = ImpactProcess::stratified, .mni = 10});
   const ShaderRecipe recipe = surface_noise_recipe(sum, {.seed = seed});
