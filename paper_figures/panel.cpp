@@ -158,6 +158,12 @@ void check_panel(const FigureInput& input) {
   for (const SelectedRun& run : input.runs) {
     for (const auto& [name, value] : options_of(run.spec())) params.insert(name);
   }
+  if (input.runs.empty()) {
+    // None of its exemplars is here, so it is not known what may be asked of its runs.
+    for (const Column& column : found->second) {
+      for (const auto& [key, value] : column) params.insert(key);
+    }
+  }
   std::vector<std::string_view> selectors{"fit", "note", "seed", "method", "periodic", "width", "height"};
   selectors.insert(selectors.end(), params.begin(), params.end());
   constexpr std::array<std::string_view, 3> required{"run", "picture", "label"};

@@ -7,6 +7,7 @@
 
 #include "experiments/files.h"
 #include "paper_figures/anchors.h"
+#include "paper_figures/exemplar_pages.h"
 #include "paper_figures/figure_kind.h"
 #include "paper_figures/figures.h"
 #include "paper_figures/ledger_page.h"
@@ -147,12 +148,13 @@ std::filesystem::path write_report(const std::vector<ReportConfig>& configs, con
   const std::string speed = std::filesystem::exists(benchmarks) ? speed_html(read_file(benchmarks)) : "";
   const std::string changes = changes_html(results);
   const std::string history = history_html(results.path() / "baseline" / "history.jsonl");
-  const std::string exemplars_section = exemplars_html(runs, exemplars, pictures);
+  const std::string exemplars_section = exemplars_html(runs, exemplars, pictures, write_exemplar_pages(runs, results));
   const int side = pictures.fitting_side();
   const std::string page =
       render_template("report", {{"title", report_title},
                                  {"css", template_file("report.css")},
                                  {"js", template_file("report.js")},
+                                 {"viewer", template_file("viewer.html")},
                                  {"summary", summary_of(configs, runs)},
                                  {"has_ledger", std::filesystem::exists(ledger_page(results))},
                                  {"picture_note", picture_note(side)},

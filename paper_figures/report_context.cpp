@@ -148,8 +148,8 @@ Json speed_view(const Json& document) {
 
 }  // namespace
 
-std::string exemplars_html(const std::vector<ReportRun>& runs, const ExemplarCatalog& exemplars,
-                           PictureStore& pictures) {
+std::string exemplars_html(const std::vector<ReportRun>& runs, const ExemplarCatalog& exemplars, PictureStore& pictures,
+                           const std::map<std::string, std::string>& pages) {
   Json views = Json::array();
   for (const SeenExemplar& seen : seen_exemplars(runs)) {
     const auto info = std::ranges::find(exemplars.all(), seen.name, &ExemplarInfo::name);
@@ -163,6 +163,7 @@ std::string exemplars_html(const std::vector<ReportRun>& runs, const ExemplarCat
     const auto key = seen.picture.is_object() ? pictures.show(seen.picture, PictureFit::window) : std::nullopt;
     views.push_back({{"anchor", exemplar_anchor(seen.name)},
                      {"name", seen.name},
+                     {"page", pages.contains(seen.name) ? Json(pages.at(seen.name)) : Json(nullptr)},
                      {"picture", key ? Json(*key) : Json(nullptr)},
                      {"facts", std::move(facts)}});
   }

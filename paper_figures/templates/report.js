@@ -87,7 +87,7 @@
   const filter = document.getElementById("record-filter");
   const records = all("details.record");
   const count = document.getElementById("record-count");
-  filter.addEventListener("input", () => {
+  if (filter) filter.addEventListener("input", () => {
     const words = filter.value.toLowerCase().split(/\s+/).filter(Boolean);
     let shown = 0;
     for (const record of records) {
@@ -99,7 +99,7 @@
   });
 
   // The entry of the contents list that is being read.
-  const entries = new Map(all(".contents a").map((link) => [link.getAttribute("href").slice(1), link]));
+  const entries = new Map(all('.contents a[href^="#"]').map((link) => [link.getAttribute("href").slice(1), link]));
   const seen = new IntersectionObserver((changes) => {
     for (const change of changes) {
       if (!change.isIntersecting) continue;

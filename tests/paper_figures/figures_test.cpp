@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "experiments/exemplars.h"
+#include "tests/experiments/exemplar_home.h"
 #include "tests/paper_figures/fixture.h"
 
 namespace textonbench::figures_test {
@@ -86,6 +88,22 @@ TEST_F(FiguresTest, SaysWhenNoExemplarOfAFigureIsHere) {
   add_figure("numbers", "table", {"rpn"});
   plan_.missing.push_back({"wall1004", "buy it", 1});
   EXPECT_THAT(make_figures(config_, plan_, results_).figures[0].refused, HasSubstr("no runs"));
+}
+
+/// Where none of the exemplars that are not part of the project is there, figures are refused, never misunderstood.
+TEST_F(FiguresTest, OfEveryDeliveredConfigCanBeUnderstood) {
+  const std::filesystem::path home = TEXTONBENCH_SOURCE_DIR;
+  const DataVariable none("");
+  const ExemplarCatalog exemplars(home);
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(home / "configs")) {
+    if (entry.path().extension() != ".toml" || entry.path().filename() == "exemplars.toml") continue;
+    if (entry.path().parent_path().filename() == "claims") continue;
+    for (const Profile profile : {Profile::quick, Profile::full}) {
+      const Config config = read_config(entry.path(), profile);
+      EXPECT_NO_THROW(EXPECT_EQ(make_figures(config, make_plan(config, exemplars), results_).made(), 0U))
+          << entry.path();
+    }
+  }
 }
 
 }  // namespace textonbench::figures_test
