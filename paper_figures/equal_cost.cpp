@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
+#include <string>
 #include <utility>
 
 namespace textonbench {
@@ -60,15 +62,15 @@ std::optional<double> value_of(const ReportRun& run, const std::string& metric) 
 
 std::vector<CostedRun> costed_runs(const std::vector<ReportRun>& runs, const std::string& exemplar) {
   std::vector<CostedRun> costed;
-  std::map<std::pair<int, int>, int> sizes;
+  std::map<std::pair<int, int>, std::set<std::string>> methods;
   for (const ReportRun& entry : runs) {
     if (entry.run.spec().exemplar != exemplar || !is_comparable(entry)) continue;
     costed.push_back({&entry, *value_of(entry, "operations_per_pixel")});
-    ++sizes[sample_size(entry)];
+    methods[sample_size(entry)].insert(entry.run.spec().method);
   }
-  const auto usual = std::ranges::max_element(sizes, {}, [](const auto& counted) {
-    const auto& [size, count] = counted;
-    return std::pair{count, std::int64_t{size.first} * size.second};
+  const auto usual = std::ranges::max_element(methods, {}, [](const auto& known) {
+    const auto& [size, names] = known;
+    return std::pair{names.size(), std::int64_t{size.first} * size.second};
   });
   std::erase_if(costed, [&](const CostedRun& run) { return sample_size(*run.entry) != usual->first; });
   return costed;

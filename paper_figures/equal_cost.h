@@ -16,8 +16,8 @@ struct CostedRun {
 };
 
 /// Runs of one exemplar that are textures of the plane or a torus: ok, with a picture of a sample, its operations a
-/// pixel, and an error against the exemplar's law (rme or smoothed_rme), drawn by the processor; of the size that most
-/// of them have, the larger one where two are as frequent. In the order of the runs.
+/// pixel, and an error against the exemplar's law (rme or smoothed_rme), drawn by the processor; of the size for
+/// which there are the most methods, the largest such. In the order of the runs.
 std::vector<CostedRun> costed_runs(const std::vector<ReportRun>& runs, const std::string& exemplar);
 
 /// What a budget of operations a pixel buys.

@@ -27,14 +27,20 @@ constexpr std::array shown_metrics{"smoothed_rme",   "rme",          "log_spectr
 
 std::string page_name(const std::string& exemplar) { return fmt::format("exemplar_{}.html", anchor_text(exemplar)); }
 
-Json picture_cell(const Record& picture, PictureStore& pictures, const std::string& label, const std::string& note,
-                  const std::string& record) {
+Extent size_of(const Record& picture) { return {picture.at("width").get<int>(), picture.at("height").get<int>()}; }
+
+/// `width` is that of the widest picture beside it: all pictures of a row have one scale.
+Json picture_cell(const Record& picture, int width, PictureStore& pictures, const std::string& label,
+                  const std::string& note, const std::string& record) {
   const auto key = pictures.show(picture, PictureFit::window);
   return {{"picture", key ? Json(*key) : Json(nullptr)},
+          {"percent", std::min(100, 100 * size_of(picture).width / std::max(width, 1))},
           {"label", label},
           {"note", or_null(note)},
           {"record", or_null(record)}};
 }
+
+const Record& sample_of(const CostedRun& run) { return run.entry->run.record->at("pictures").at("sample"); }
 
 std::string cost_note(const CostedRun& run) {
   const auto error = value_of(*run.entry, "smoothed_rme");
@@ -73,11 +79,14 @@ Json table_of(const CostLevel& level) {
 
 Json view_of(const CostLevel& level, const Record& exemplar_picture, PictureStore& pictures) {
   Json cells = Json::array();
-  if (exemplar_picture.is_object()) cells.push_back(picture_cell(exemplar_picture, pictures, "Exemplar", "", ""));
+  const int width = size_of(sample_of(level.runs.front())).width;
+  if (exemplar_picture.is_object()) {
+    cells.push_back(picture_cell(exemplar_picture, width, pictures, "Exemplar", "", ""));
+  }
   for (const CostedRun& run : level.runs) {
     const SelectedRun& selected = run.entry->run;
-    cells.push_back(picture_cell(selected.record->at("pictures").at("sample"), pictures, selected.spec().method,
-                                 cost_note(run), record_anchor(selected.planned->id)));
+    cells.push_back(picture_cell(sample_of(run), width, pictures, selected.spec().method, cost_note(run),
+                                 record_anchor(selected.planned->id)));
   }
   std::vector<std::string> absent;
   absent.reserve(level.absent.size());
@@ -138,7 +147,10 @@ std::map<std::string, std::string> write_exemplar_pages(const std::vector<Report
                                                                {"viewer", template_file("viewer.html")},
                                                                {"levels", std::move(views)}});
     pages[exemplar] = page_name(exemplar);
-    write_atomically(folder / pages[exemplar], pictures.embed(page, pictures.fitting_side()));
+    // No larger than the samples, so that a larger exemplar is shown by its middle.
+    const Extent sample = size_of(sample_of(levels.front().runs.front()));
+    const int fitting = pictures.fitting_side(), side = std::max(sample.width, sample.height);
+    write_atomically(folder / pages[exemplar], pictures.embed(page, fitting > 0 ? std::min(fitting, side) : side));
   }
   remove_old_pages(folder, pages);
   return pages;
